@@ -64,6 +64,7 @@ struct BondLaw {
   double stiffness_ratio = 2.5;  ///< normal over shear stiffness per area; twisting uses shear
   double radius_factor = 1.0;    ///< section radius over the smaller particle radius
   double damping_ratio = 0.0;    ///< of critical, on the relative motion of the two ends
+  double normal_stiffness = 0.0;  ///< per section area [Pa/m]; when > 0 it stands for young_modulus / L
   double tensile_strength = std::numeric_limits<double>::infinity();  ///< [Pa]
   double shear_strength = std::numeric_limits<double>::infinity();    ///< [Pa]
 };
@@ -115,6 +116,12 @@ struct OutputSpec {
   bool picture = true;               ///< final state as picture.png
 };
 
+struct CheckpointSpec {
+  std::int64_t every_steps = 0;  ///< 0 = not by steps
+  double every_seconds = 0.0;    ///< of wall-clock time; 0 = not by time
+  int keep = 2;                  ///< the newest so many stay on disk
+};
+
 /// One particle of a file or generator, dimension-free (2D: z = vz = omegax = omegay = 0).
 struct ParticleData {
   std::int64_t id = 0;    ///< from 1
@@ -124,6 +131,7 @@ struct ParticleData {
   Vec3 position = Vec3::Zero();
   Vec3 velocity = Vec3::Zero();
   Vec3 omega = Vec3::Zero();  ///< [rad/s]
+  bool fixed = false;         ///< never moves: inverse mass and inertia are zero
 };
 
 /// An intact bond between two particles, straight and unstressed at the start.
@@ -152,6 +160,7 @@ struct Model {
   std::vector<Stage> stages;  ///< never empty
   SearchSpec search;
   OutputSpec output;
+  CheckpointSpec checkpoint;
 };
 
 }  // namespace barchan

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <barchan/core/error.hpp>
+#include <barchan/core/model.hpp>
+
+// Where the particles of a run come from: plain data that a deck writes and the generators read.
+// Everything is checked and in SI: indices are valid, lengths are positive and finite, boxes are not empty.
+
+namespace barchan {
+
+/// Particles with centres in lo <= x <= hi, per axis; 2D leaves z at zero (lo.z = hi.z = 0), where it is not compared.
+struct Box {
+  Vec3 lo = Vec3::Zero();  ///< [m]
+  Vec3 hi = Vec3::Zero();  ///< [m]
+};
+
+/// Radii uniform in [min, max]; a single radius has min = max.
+struct RadiusClass {
+  double min = 0.0;     ///< [m] > 0
+  double max = 0.0;     ///< [m] >= min
+  double weight = 1.0;  ///< share by number, > 0, not normalised
+};
+
+/// What sizes a generator draws from; never empty.
+struct SizeDistribution {
+  std::vector<RadiusClass> classes;
+
+  [[nodiscard]] double min_radius() const;  ///< [m]
+  [[nodiscard]] double max_radius() const;  ///< [m]
+};
+
+/// A disk (2D) or sphere (3D) that a packing keeps free: no particle of the packing reaches into it.
+struct Hole {
+  Vec3 center = Vec3::Zero();  ///< [m]
+  double radius = 0.0;         ///< [m] > 0
+};
+
+/// A table of particles; a `.csv` with a header, or a LAMMPS data file (atom style sphere) ending in `.data`.
+/// The `type` column counts materials from 1 in deck order unless ParticleSource::material is given.
+struct FileSource {
+  std::string path;  ///< as opened: a relative path of the deck is already joined to the deck's folder
+  enum class Format { Csv, LammpsData } format = Format::Csv;
+};
+
+/// Particles on a regular grid whose first site lies at region.lo + spacing/2 on every axis.
+/// Every particle stays within the region; z is zero in 2D.
+struct LatticeSource {
+  /// Square and Hexagonal are 2D (rows along x), Cubic and Fcc are 3D (spacing is the nearest distance).
+  enum class Arrangement { Square, Hexagonal, Cubic, Fcc } arrangement = Arrangement::Square;
+  Box region;
+  SizeDistribution sizes;
+  double spacing = 0.0;    ///< between nearest sites [m], at least 2·max_radius
+  double jitter = 0.0;     ///< uniform shift per axis in ±jitter·spacing/2, in [0, 1)
+  std::uint64_t seed = 1;  ///< of radii and jitter
+};
+
+/// Random close packing; exactly one of count and solid_fraction is given.
+struct PackingSource {
+  Box region;
+  SizeDistribution sizes;
+  std::optional<std::int64_t> count;     ///< particles, > 0
+  std::optional<double> solid_fraction;  ///< area (2D) or volume (3D) of particles over the region less its holes
+  std::vector<Hole> holes;
+  std::uint64_t seed = 1;
+};
+
+/// Disks evenly spaced on a circle (2D), counter-clockwise from `start_angle`.
+struct RingSource {
+  Vec3 center = Vec3::Zero();  ///< [m]
+  double radius = 0.0;         ///< centre to disk centres [m]
+  std::int64_t count = 0;      ///< disks, >= 3
+  double disk_radius = 0.0;    ///< [m]; the deck fills in radius·sin(pi/count), where neighbours just touch
+  double start_angle = 0.0;    ///< of the first disk from the x axis [rad]
+};
+
+/// Particles written out one by one. `type`, `density` and `velocity` are filled in from the source's; ids are zero.
+struct ListSource {
+  std::vector<ParticleData> particles;
+};
+
+/// One [[particles]] table. Sources follow each other in deck order, and so do the ids of their particles.
+struct ParticleSource {
+  SourcePlace place;              ///< of the table in the deck, for errors found while generating
+  std::optional<int> material;    ///< index; none only for a file that brings its own types
+  std::optional<double> density;  ///< instead of the material's (or the file's), 2D areal
+  Vec3 velocity = Vec3::Zero();   ///< [m/s]; a file's own velocities are added to it
+  Vec3 omega = Vec3::Zero();      ///< [rad/s]; likewise
+  std::optional<int> bond;        ///< index into Model::bond_laws: bonds those of this source that touch
+                                  ///< (ring: the neighbours along it; touch: gap <= 1e-6 of the radii's sum)
+  std::optional<Box> fixed;       ///< particles with centres in here never move; endless box = all
+  std::variant<FileSource, LatticeSource, PackingSource, RingSource, ListSource> kind;
+};
+
+}  // namespace barchan
