@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# A project that adds this one as a subdirectory configures, gets no tests or command, and compiles against it.
+set -eu
+rm -rf build
+cmake -S "$BARCHAN_SOURCE/tests/install/subdirectory" -B build -G Ninja -DCMAKE_BUILD_TYPE=Release \
+  -DBARCHAN_SOURCE="$BARCHAN_SOURCE"
+targets=$(cmake --build build --target help)
+if grep -E '^(unit_tests|mpi_tests|barchan_app):' <<< "$targets"; then
+  echo "tests or the command are part of another project's build"
+  exit 1
+fi
+# Linking is what the install test shows; building every layer again would only take time.
+cmake --build build --target CMakeFiles/consumer.dir/main.cpp.o
