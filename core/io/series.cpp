@@ -1,0 +1,94 @@
+#include <barchan/core/io/series.hpp>
+
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <barchan/core/error.hpp>
+#include <barchan/core/io/text_file.hpp>
+
+namespace barchan {
+namespace {
+
+std::string header_of(std::span<const std::string> further_columns) {
+  std::string header = "step,time,kinetic_energy,contacts,max_overlap";
+  for (const std::string& column : further_columns) header += "," + column;
+  return header;
+}
+
+/// The part of a table up to and including `step`; a last row without line feed is not trusted.
+std::string kept_rows(std::string_view text, const std::string& path, const std::string& header,
+                      std::int64_t step) {
+  LineReader lines(text.substr(0, text.find_last_of('\n') + 1), path);
+  std::string_view line;
+  if (!lines.next(line)) return header + "\n";
+  if (line != header) {
+    throw InputError(lines.place(), "the series has other columns than this run",
+                     "expected " + header);
+  }
+  std::string kept = header + "\n";
+  while (lines.next(line)) {
+    std::int64_t row_step = 0;
+    const auto result = std::from_chars(line.data(), line.data() + line.size(), row_step);
+    if (result.ec != std::errc{})
+      throw InputError(lines.place(), "a row without step", "remove the damaged row");
+    if (row_step > step) break;
+    kept.append(line).push_back('\n');
+  }
+  return kept;
+}
+
+}  // namespace
+
+SeriesWriter::SeriesWriter(std::string path, std::size_t num_further, const char* mode)
+    : path_(std::move(path)), num_further_(num_further), file_(std::fopen(path_.c_str(), mode)) {
+  if (file_ == nullptr) throw RunError("cannot create " + path_ + ": " + std::strerror(errno));
+}
+
+SeriesWriter::SeriesWriter(SeriesWriter&& other) noexcept
+    : path_(std::move(other.path_)),
+      num_further_(other.num_further_),
+      file_(std::exchange(other.file_, nullptr)) {}
+
+SeriesWriter::~SeriesWriter() {
+  if (file_ != nullptr) std::fclose(file_);
+}
+
+SeriesWriter SeriesWriter::create(const std::string& path,
+                                  std::span<const std::string> further_columns) {
+  SeriesWriter series(path, further_columns.size(), "wb");
+  series.put(header_of(further_columns) + "\n");
+  return series;
+}
+
+SeriesWriter SeriesWriter::resume(const std::string& path,
+                                  std::span<const std::string> further_columns, std::int64_t step) {
+  if (!std::filesystem::exists(path)) return create(path, further_columns);
+  const std::string kept = kept_rows(read_text_file(path), path, header_of(further_columns), step);
+  OutputFile file(path);
+  file.write(kept);
+  file.commit();
+  return SeriesWriter(path, further_columns.size(), "ab");
+}
+
+void SeriesWriter::append(const SeriesRow& row, std::span<const double> further) {
+  if (further.size() != num_further_)
+    throw std::logic_error("series: one value per further column is needed");
+  std::string text = fmt::format("{},{:.17g},{:.17g},{},{:.17g}", row.step, row.time,
+                                 row.kinetic_energy, row.contacts, row.max_overlap);
+  for (const double value : further) fmt::format_to(std::back_inserter(text), ",{:.17g}", value);
+  put(text + "\n");
+}
+
+void SeriesWriter::put(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), file_) != text.size() || std::fflush(file_) != 0) {
+    throw RunError("cannot write " + path_ + ": " + std::strerror(errno));
+  }
+}
+
+}  // namespace barchan

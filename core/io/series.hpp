@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace barchan {
+
+/// What every row of a series begins with.
+struct SeriesRow {
+  std::int64_t step = 0;
+  double time = 0.0;            ///< [s]
+  double kinetic_energy = 0.0;  ///< [J]
+  std::int64_t contacts = 0;
+  double max_overlap = 0.0;  ///< [m]
+};
+
+/// The table of a run over time: `step,time,kinetic_energy,contacts,max_overlap`, then columns of
+/// the caller. Each row is on its way to the disk before append() returns. One writer per file
+/// (rank 0).
+class SeriesWriter {
+ public:
+  /// Starts a new table. @throws RunError when the file cannot be written
+  static SeriesWriter create(const std::string& path, std::span<const std::string> further_columns);
+
+  /// Goes on with an existing table after a restart at `step`: rows with a greater step and an
+  /// unfinished last row are removed; without a file, starts a new one.
+  /// @throws InputError when the header of the file names other columns; RunError
+  static SeriesWriter resume(const std::string& path, std::span<const std::string> further_columns,
+                             std::int64_t step);
+
+  ~SeriesWriter();
+  SeriesWriter(SeriesWriter&& other) noexcept;
+  SeriesWriter& operator=(SeriesWriter&&) = delete;
+
+  /// @pre further has one value for each further column @throws RunError
+  void append(const SeriesRow& row, std::span<const double> further);
+
+ private:
+  SeriesWriter(std::string path, std::size_t num_further, const char* mode);
+  void put(const std::string& text);
+
+  std::string path_;
+  std::size_t num_further_ = 0;
+  std::FILE* file_ = nullptr;
+};
+
+}  // namespace barchan
