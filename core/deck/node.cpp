@@ -1,0 +1,112 @@
+#include <barchan/core/deck/node.hpp>
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <barchan/core/deck/key_depth.hpp>
+
+namespace barchan::deck {
+
+namespace {
+
+using FileName = std::shared_ptr<const std::string>;
+
+void set_place(Node& node, const toml::source_region& region, const FileName& file) {
+  node.file = file;
+  node.line = static_cast<std::int64_t>(region.begin.line);
+  node.column = static_cast<std::int64_t>(region.begin.column);
+}
+
+Node convert(const toml::node& source, const FileName& file);
+
+void convert_table(const toml::table& table, const FileName& file, Node& node) {
+  node.kind = Node::Kind::Table;
+  for (const auto& [key, value] : table) {
+    const toml::source_position at = key.source().begin;
+    const SourcePlace place{*file, static_cast<std::int64_t>(at.line),
+                            static_cast<std::int64_t>(at.column)};
+    node.members.push_back({std::string(key.str()), place, convert(value, file)});
+  }
+  std::sort(node.members.begin(), node.members.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.place.line, a.place.column) < std::pair(b.place.line, b.place.column);
+  });
+}
+
+void convert_scalar(const toml::node& source, Node& node) {
+  if (const auto* text = source.as_string()) {
+    node.kind = Node::Kind::String;
+    node.text = text->get();
+  } else if (const auto* integer = source.as_integer()) {
+    node.kind = Node::Kind::Integer;
+    node.integer = integer->get();
+    node.number = static_cast<double>(integer->get());
+  } else if (const auto* number = source.as_floating_point()) {
+    node.kind = Node::Kind::Float;
+    node.number = number->get();
+  } else if (const auto* boolean = source.as_boolean()) {
+    node.kind = Node::Kind::Boolean;
+    node.boolean = boolean->get();
+  } else {
+    node.kind = Node::Kind::Date;
+  }
+}
+
+Node convert(const toml::node& source, const FileName& file) {
+  Node node;
+  set_place(node, source.source(), file);
+  if (const toml::table* table = source.as_table()) {
+    convert_table(*table, file, node);
+  } else if (const toml::array* array = source.as_array()) {
+    node.kind = Node::Kind::Array;
+    for (const toml::node& item : *array) node.items.push_back(convert(item, file));
+  } else {
+    convert_scalar(source, node);
+  }
+  return node;
+}
+
+}  // namespace
+
+SourcePlace Node::place() const { return {file ? *file : std::string(), line, column}; }
+
+const Node::Member* Node::find(std::string_view key) const {
+  for (const Member& member : members) {
+    if (member.key == key) return &member;
+  }
+  return nullptr;
+}
+
+Node::Member* Node::find(std::string_view key) {
+  return const_cast<Member*>(static_cast<const Node*>(this)->find(key));
+}
+
+std::string_view kind_name(Node::Kind kind) {
+  switch (kind) {
+    case Node::Kind::Table: return "a table";
+    case Node::Kind::Array: return "an array";
+    case Node::Kind::String: return "a string";
+    case Node::Kind::Integer: return "an integer";
+    case Node::Kind::Float: return "a number";
+    case Node::Kind::Boolean: return "a boolean";
+    case Node::Kind::Date: return "a date or time";
+  }
+  return "nothing";
+}
+
+Node parse_toml(std::string_view text, const std::string& file_name) {
+  check_key_depth(text, file_name);
+  try {
+    const toml::table table = toml::parse(text, file_name);
+    return convert(table, std::make_shared<const std::string>(file_name));
+  } catch (const toml::parse_error& error) {
+    const toml::source_position at = error.source().begin;
+    throw InputError({file_name, static_cast<std::int64_t>(at.line), static_cast<std::int64_t>(at.column)},
+                     fmt::format("this is not TOML: {}", error.description()),
+                     "write `key = value`, one a line, strings in double quotes");
+  }
+}
+
+}  // namespace barchan::deck

@@ -1,0 +1,137 @@
+// The run itself: domain, time, stages, search, output, checkpoints.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <barchan/core/deck/boxes.hpp>
+#include <barchan/core/deck/nearest.hpp>
+#include <barchan/core/deck/readers.hpp>
+
+namespace barchan::deck {
+
+namespace {
+
+constexpr std::string_view kAxisNames[] = {"x", "y", "z"};
+
+int axis_index(const std::string& name, int dimension, const SourcePlace& place) {
+  const auto axes = std::span(kAxisNames).first(static_cast<std::size_t>(dimension));
+  for (int axis = 0; axis < dimension; ++axis) {
+    if (name == axes[axis]) return axis;
+  }
+  throw InputError(place, fmt::format("'{}' is no axis in {} dimensions", name, dimension),
+                   dimension == 2 ? "axes are x and y" : "axes are x, y and z");
+}
+
+int longest_axis(const Domain& domain, int dimension) {
+  int longest = 0;
+  for (int axis = 1; axis < dimension; ++axis) {
+    if (domain.hi[axis] - domain.lo[axis] > domain.hi[longest] - domain.lo[longest]) longest = axis;
+  }
+  return longest;
+}
+
+Domain read_domain(const TableReader& root) {
+  const TableReader table(*root.table("domain"), root.dimension(), "[domain]");
+  const Box box = read_corners(table, "the domain");
+  Domain domain;
+  domain.lo = box.lo;
+  domain.hi = box.hi;
+  for (const std::string& name : table.names("periodic")) {
+    domain.periodic[axis_index(name, table.dimension(), table.place("periodic"))] = true;
+  }
+  const std::string strip_axis = table.string("strip_axis");
+  domain.strip_axis = strip_axis == "longest"
+                          ? longest_axis(domain, table.dimension())
+                          : axis_index(strip_axis, table.dimension(), table.place("strip_axis"));
+  return domain;
+}
+
+std::int64_t steps_until(const TableReader& table, double end, double step) {
+  constexpr double kMaxSteps = 1e15;
+  const double steps = end / step;
+  if (!(steps < kMaxSteps)) {
+    table.fail("end", fmt::format("end = {} s takes {} steps of {} s", end, steps, step), "at most 1e15 are possible");
+  }
+  if (steps < 0.5) {
+    table.fail("end", fmt::format("end = {} s lies before the first step of {} s", end, step),
+               "write a longer time, or steps = 0 to look at the start only");
+  }
+  return std::llround(steps);
+}
+
+TimeSpec read_time(const TableReader& root) {
+  const TableReader table(*root.table("time"), root.dimension(), "[time]");
+  TimeSpec time;
+  time.step = table.number("step");
+  time.allow_unstable = table.boolean("allow_unstable");
+  if (!table.has_one_of("end", "steps")) {
+    table.fail("", "[time] says nowhere when the run ends", "add end = <seconds> or steps = <number of steps>");
+  }
+  const auto end = table.optional_number("end");
+  time.num_steps = end ? steps_until(table, *end, time.step) : *table.optional_integer("steps");
+  return time;
+}
+
+Node empty_table(const TableReader& root) {
+  Node node;
+  node.file = std::make_shared<const std::string>(root.place().file);
+  return node;
+}
+
+void read_options(const TableReader& root, Model& model) {
+  const Node empty = empty_table(root);
+  const auto node = [&](std::string_view key) { return root.has(key) ? root.table(key) : &empty; };
+  const TableReader search(*node("search"), root.dimension(), "[search]");
+  model.search.kind = search.string("kind") == "cells" ? ContactSearchKind::Cells : ContactSearchKind::AllPairs;
+  model.search.skin = search.optional_number("skin");
+
+  const TableReader output(*node("output"), root.dimension(), "[output]");
+  model.output.series_every = output.integer("series_every");
+  model.output.snapshots_every = output.integer("snapshots_every");
+  model.output.picture = output.boolean("picture");
+
+  const TableReader checkpoint(*node("checkpoint"), root.dimension(), "[checkpoint]");
+  model.checkpoint.every_steps = checkpoint.integer("every_steps");
+  model.checkpoint.every_seconds = checkpoint.number("every_seconds");
+  const std::int64_t keep = checkpoint.integer("keep");
+  if (keep > 1000) checkpoint.fail("keep", fmt::format("keep = {} is out of range", keep), "keep at most 1000");
+  model.checkpoint.keep = static_cast<int>(keep);
+}
+
+}  // namespace
+
+void read_run_tables(const TableReader& root, DeckDraft& draft) {
+  Model& model = draft.deck.model;
+  model.title = root.optional_string("title").value_or("");
+  model.gravity = root.vector("gravity");
+  model.domain = read_domain(root);
+  model.time = read_time(root);
+  read_options(root, model);
+}
+
+void read_stages(const TableReader& root, DeckDraft& draft) {
+  std::vector<Stage>& stages = draft.deck.model.stages;
+  const auto nodes = root.tables("stage");
+  for (const Node* node : nodes) {
+    const TableReader table(*node, root.dimension(), "[[stage]]");
+    Stage stage;
+    stage.name = table.string("name");
+    stage.local_damping = table.number("local_damping");
+    stage.max_time = table.optional_number("max_time").value_or(stage.max_time);
+    stage.kinetic_ratio = table.number("kinetic_ratio");
+    draft.stages.add(stage.name, table.place("name"));
+    const bool is_last = node == nodes.back();
+    if (!is_last && std::isinf(stage.max_time) && stage.kinetic_ratio == 0.0) {
+      table.fail("name", fmt::format("stage '{}' never ends, so those after it never begin", stage.name),
+                 "give it max_time or kinetic_ratio");
+    }
+    stages.push_back(stage);
+  }
+  if (stages.empty()) {
+    stages.push_back({});
+    stages.back().name = "run";
+    draft.stages.add("run", root.place());
+  }
+}
+
+}  // namespace barchan::deck

@@ -1,0 +1,67 @@
+#include <barchan/core/deck/schema_keys.hpp>
+
+namespace barchan::deck {
+
+namespace {
+
+using T = ValueType;
+
+constexpr KeySpec kRunKeys[] = {
+    {"deck", "title", T::String, "", "none", "a line about the run, kept in its results"},
+    {"deck", "dimension", T::Integer, "", "required", "2 for disks of unit thickness, 3 for spheres"},
+    {"deck", "gravity", T::Vector, "m/s²", "zero", "acceleration of every particle"},
+    {"deck", "domain", T::Table, "", "required", "the box that bounds the particles"},
+    {"deck", "time", T::Table, "", "required", "step and length of the run"},
+    {"deck", "material", T::Tables, "", "required", "what particles and walls are made of"},
+    {"deck", "pair", T::Tables, "", "none", "contact constants of two materials"},
+    {"deck", "contact", T::Table, "", "none", "rules for all contacts"},
+    {"deck", "bond", T::Tables, "", "none", "laws of linking elements"},
+    {"deck", "particles", T::Tables, "", "required", "where particles come from"},
+    {"deck", "wall", T::Tables, "", "none", "planes and plates"},
+    {"deck", "stage", T::Tables, "", "one stage", "stretches of the run, in order"},
+    {"deck", "search", T::Table, "", "none", "how contacts are found"},
+    {"deck", "output", T::Table, "", "none", "what the run folder gets, and how often"},
+    {"deck", "checkpoint", T::Table, "", "none", "when the run is saved"},
+
+    {"[domain]", "lo", T::Vector, "m", "required", "lower corner"},
+    {"[domain]", "hi", T::Vector, "m", "required", "upper corner, above `lo` on every axis"},
+    {"[domain]", "periodic", T::Names, "", "none", "axes that wrap around, such as `[\"x\"]`"},
+    {"[domain]", "strip_axis", T::Choice, "", "longest", "axis along which ranks own strips",
+     "x|y|z|longest"},
+
+    {"[time]", "step", T::PositiveNumber, "s", "required", "time step"},
+    {"[time]", "end", T::PositiveNumber, "s", "none",
+     "length of the run, rounded to whole steps; this or `steps`"},
+    {"[time]", "steps", T::NonNegativeInteger, "", "none", "number of steps; this or `end`"},
+    {"[time]", "allow_unstable", T::Boolean, "", "false",
+     "run even where the step is beyond the stable one"},
+
+    {"[[stage]]", "name", T::String, "", "required", "unique"},
+    {"[[stage]]", "local_damping", T::Fraction, "", "0",
+     "Cundall's alpha: each component of force is reduced by this share of itself, against the motion"},
+    {"[[stage]]", "max_time", T::PositiveNumber, "s", "none", "the stage ends after this time at the latest"},
+    {"[[stage]]", "kinetic_ratio", T::NonNegativeNumber, "", "0",
+     "the stage ends when kinetic energy over the sum of force times radius falls below; 0 = never"},
+
+    {"[search]", "kind", T::Choice, "", "cells",
+     "`cells` with lists of candidates, or every pair with every other, as a reference", "cells|all-pairs"},
+    {"[search]", "skin", T::NonNegativeNumber, "m", "chosen from the radii",
+     "gap up to which a pair is kept as a candidate"},
+
+    {"[output]", "series_every", T::NonNegativeInteger, "steps", "0",
+     "between rows of `series.csv`; 0 = a hundredth of the run"},
+    {"[output]", "snapshots_every", T::NonNegativeInteger, "steps", "0",
+     "between snapshots; 0 = only the first and the last state"},
+    {"[output]", "picture", T::Boolean, "", "true", "draw the last state as `picture.png`"},
+
+    {"[checkpoint]", "every_steps", T::NonNegativeInteger, "steps", "0", "between checkpoints; 0 = not by steps"},
+    {"[checkpoint]", "every_seconds", T::NonNegativeNumber, "s", "0",
+     "of wall-clock time between checkpoints; 0 = not by time"},
+    {"[checkpoint]", "keep", T::PositiveInteger, "", "2", "how many checkpoints stay, the newest ones"},
+};
+
+}  // namespace
+
+std::span<const KeySpec> run_keys() { return kRunKeys; }
+
+}  // namespace barchan::deck
