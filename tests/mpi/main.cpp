@@ -48,7 +48,7 @@ class RankListener : public testing::EmptyTestEventListener {
     int num_failed = 0;
     MPI_Allreduce(&has_failed, &num_failed, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
     alarm(0);
-    if (num_failed > 0 && has_failed == 0) {
+    if (rank_ == 0 && num_failed > 0 && has_failed == 0) {
       ADD_FAILURE() << "failed on " << num_failed << " of " << num_ranks_ << " ranks";
     }
   }
@@ -76,6 +76,7 @@ int run_tests() {
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
+  if (GTEST_FLAG_GET(list_tests)) return RUN_ALL_TESTS();
   int provided = 0;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided);
   if (provided < MPI_THREAD_SERIALIZED) {
