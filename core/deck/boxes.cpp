@@ -12,8 +12,9 @@ Box read_corners(const TableReader& table, std::string_view what) {
   const Box box{table.vector("lo"), table.vector("hi")};
   for (int axis = 0; axis < table.dimension(); ++axis) {
     if (!(box.hi[axis] > box.lo[axis])) {
-      table.fail("hi", fmt::format("{} is empty: along {} hi = {} is not above lo = {}", what, kAxisNames[axis],
-                                   box.hi[axis], box.lo[axis]),
+      table.fail("hi",
+                 fmt::format("{} is empty: along {} hi = {} is not above lo = {}", what,
+                             kAxisNames[axis], box.hi[axis], box.lo[axis]),
                  "write the lower corner as lo, the upper as hi");
     }
   }
@@ -24,17 +25,19 @@ Box read_box(const Node& node, int dimension, std::string_view what) {
   return read_corners(TableReader(node, dimension, "box"), what);
 }
 
-void check_inside(const Box& box, const Model& model, const SourcePlace& place, std::string_view what) {
+void check_inside(const Box& box, const Model& model, const SourcePlace& place,
+                  std::string_view what) {
   for (int axis = 0; axis < model.dimension; ++axis) {
     const double slack = 1e-9 * (model.domain.hi[axis] - model.domain.lo[axis]);
-    const bool is_inside =
-        box.lo[axis] >= model.domain.lo[axis] - slack && box.hi[axis] <= model.domain.hi[axis] + slack;
+    const bool is_inside = box.lo[axis] >= model.domain.lo[axis] - slack &&
+                           box.hi[axis] <= model.domain.hi[axis] + slack;
     if (!is_inside) {
-      throw InputError(place,
-                       fmt::format("{} lies outside the domain: along {} it spans {} to {}, the domain {} to {}", what,
-                                   kAxisNames[axis], box.lo[axis], box.hi[axis], model.domain.lo[axis],
-                                   model.domain.hi[axis]),
-                       "move it, or make the domain larger");
+      throw InputError(
+          place,
+          fmt::format("{} lies outside the domain: along {} it spans {} to {}, the domain {} to {}",
+                      what, kAxisNames[axis], box.lo[axis], box.hi[axis], model.domain.lo[axis],
+                      model.domain.hi[axis]),
+          "move it, or make the domain larger");
     }
   }
 }

@@ -5,14 +5,16 @@
 
 namespace barchan::deck {
 
-/// Reads `lo` and `hi` of a table. Errors: InputError when the box is empty; `what` is its name there.
+/// Reads `lo` and `hi` of a table. Errors: InputError when the box is empty; `what` is its name
+/// there.
 Box read_corners(const TableReader& table, std::string_view what);
 
 /// Reads a box `{ lo = ..., hi = ... }`.
 Box read_box(const Node& node, int dimension, std::string_view what);
 
 /// Errors: InputError at `place` when the box sticks out of the domain.
-void check_inside(const Box& box, const Model& model, const SourcePlace& place, std::string_view what);
+void check_inside(const Box& box, const Model& model, const SourcePlace& place,
+                  std::string_view what);
 
 /// Area (2D) or volume (3D).
 double measure(const Box& box, int dimension);

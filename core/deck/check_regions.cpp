@@ -19,7 +19,7 @@ struct Annulus {
 /// What a source claims.
 struct Ground {
   const Box* box = nullptr;
-  std::span<const Hole> holes;    ///< of the box
+  std::span<const Hole> holes;  ///< of the box
   std::vector<Annulus> annuli;
   bool is_list = false;
 };
@@ -32,7 +32,8 @@ Ground ground_of(const ParticleSource& source) {
     ground.holes = packing->holes;
   }
   if (const auto* ring = std::get_if<RingSource>(&source.kind)) {
-    ground.annuli.push_back({ring->center, ring->radius - ring->disk_radius, ring->radius + ring->disk_radius});
+    ground.annuli.push_back(
+        {ring->center, ring->radius - ring->disk_radius, ring->radius + ring->disk_radius});
   }
   if (const auto* list = std::get_if<ListSource>(&source.kind)) {
     ground.is_list = true;
@@ -57,7 +58,9 @@ Reach reach(const Vec3& point, const Box& box) {
   return {gap.norm(), far.norm()};
 }
 
-double slack(double length) { return 1e-9 * length; }
+double slack(double length) {
+  return 1e-9 * length;
+}
 
 bool overlap(const Box& a, const Box& b, int dimension) {
   for (int axis = 0; axis < dimension; ++axis) {
@@ -89,13 +92,15 @@ bool overlap(const Annulus& a, const Annulus& b) {
   const double distance = (a.center - b.center).norm();
   const double tolerance = slack(a.outer + b.outer);
   const bool is_apart = distance >= a.outer + b.outer - tolerance;
-  const bool is_nested = distance + a.outer <= b.inner + tolerance || distance + b.outer <= a.inner + tolerance;
+  const bool is_nested =
+      distance + a.outer <= b.inner + tolerance || distance + b.outer <= a.inner + tolerance;
   return !is_apart && !is_nested;
 }
 
 bool overlap(const Ground& a, const Ground& b, int dimension) {
   if (a.box && b.box) {
-    return overlap(*a.box, *b.box, dimension) && !lies_in_hole(*a.box, b.holes) && !lies_in_hole(*b.box, a.holes);
+    return overlap(*a.box, *b.box, dimension) && !lies_in_hole(*a.box, b.holes) &&
+           !lies_in_hole(*b.box, a.holes);
   }
   if (b.box) return overlap(b, a, dimension);
   if (a.is_list && b.is_list) return false;  // one by one: the deck says so
@@ -117,8 +122,10 @@ void check_regions(const std::vector<ParticleSource>& sources, int dimension) {
     for (std::size_t a = 0; a < b; ++a) {
       if (!overlap(grounds[a], grounds[b], dimension)) continue;
       throw InputError(sources[b].place,
-                       fmt::format("these particles overlap the region of those in line {}", sources[a].place.line),
-                       "move the regions apart, or keep a hole free in a packing: holes = [{ center = ..., radius = ... }]");
+                       fmt::format("these particles overlap the region of those in line {}",
+                                   sources[a].place.line),
+                       "move the regions apart, or keep a hole free in a packing: holes = [{ "
+                       "center = ..., radius = ... }]");
     }
   }
 }

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -16,13 +16,20 @@ namespace {
 
 constexpr std::size_t kMaxDeckBytes = std::size_t{64} << 20;
 
+/// The text of a file, at most one byte more than a deck may have.
 std::string read_text(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
-  std::string text(kMaxDeckBytes + 1, '\0');
-  if (file) file.read(text.data(), static_cast<std::streamsize>(text.size()));
-  const bool is_read = file.is_open() && !file.bad() && !std::filesystem::is_directory(path);
-  if (!is_read) throw InputError({path, 0, 0}, "cannot read this deck", "give the path of a readable TOML file");
-  text.resize(static_cast<std::size_t>(file.gcount()));
+  std::string text;
+  std::vector<char> block(std::size_t{1} << 16);
+  while (file && text.size() <= kMaxDeckBytes) {
+    file.read(block.data(), static_cast<std::streamsize>(block.size()));
+    text.append(block.data(), static_cast<std::size_t>(file.gcount()));
+  }
+  std::error_code ignored;
+  if (!file.is_open() || file.bad() || std::filesystem::is_directory(path, ignored)) {
+    throw InputError({path, 0, 0}, "cannot read this deck",
+                     "give the path of a readable TOML file");
+  }
   return text;
 }
 
@@ -43,9 +50,11 @@ Deck read_deck(const std::string& path, std::span<const DeckOverride> overrides)
   return parse_deck(read_text(path), path, overrides);
 }
 
-Deck parse_deck(std::string_view text, const std::string& file_name, std::span<const DeckOverride> overrides) {
+Deck parse_deck(std::string_view text, const std::string& file_name,
+                std::span<const DeckOverride> overrides) {
   if (text.size() > kMaxDeckBytes) {
-    throw InputError({file_name, 0, 0}, "a deck of more than 64 MiB", "move its particles into a file of their own");
+    throw InputError({file_name, 0, 0}, "a deck of more than 64 MiB",
+                     "move its particles into a file of their own");
   }
   deck::Node root = deck::parse_toml(text, file_name);
   if (root.line == 0) root.line = root.column = 1;

@@ -8,13 +8,14 @@
 #include <barchan/core/model.hpp>
 #include <barchan/core/particle_source.hpp>
 
-// Decks: TOML in, checked plain data out. docs/deck.md is the reference; schema.hpp lists every key.
+// Decks: TOML in, checked plain data out. docs/deck.md is the reference; schema.hpp lists every
+// key.
 
 namespace barchan {
 
-/// One `--set key=value`. `key` is dotted; an entry of an array of tables is named by its `name` or by its
-/// number from 1: `time.step`, `material.soil.friction`, `particles.1.count`. `value` is TOML; what is not TOML
-/// is taken as a string, so words need no quotes.
+/// One `--set key=value`. `key` is dotted; an entry of an array of tables is named by its `name` or
+/// by its number from 1: `time.step`, `material.soil.friction`, `particles.1.count`. `value` is
+/// TOML; what is not TOML is taken as a string, so words need no quotes.
 struct DeckOverride {
   std::string key;
   std::string value;
@@ -32,7 +33,9 @@ struct Deck {
 /// Errors: InputError with file, line and column, what is wrong, what would be right.
 Deck read_deck(const std::string& path, std::span<const DeckOverride> overrides = {});
 
-/// The same from text; `file_name` is what errors say. Touches no file: particle files are not opened here.
-Deck parse_deck(std::string_view text, const std::string& file_name, std::span<const DeckOverride> overrides = {});
+/// The same from text; `file_name` is what errors say. Touches no file: particle files are not
+/// opened here.
+Deck parse_deck(std::string_view text, const std::string& file_name,
+                std::span<const DeckOverride> overrides = {});
 
 }  // namespace barchan

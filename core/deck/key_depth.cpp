@@ -11,7 +11,8 @@ namespace {
 
 constexpr int kMaxDots = 15;
 
-/// Position after the string that opens at `begin`; the end of the line or text when it never closes.
+/// Position after the string that opens at `begin`; the end of the line or text when it never
+/// closes.
 std::size_t skip_string(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   const std::string triple(3, quote);
@@ -21,7 +22,8 @@ std::size_t skip_string(std::string_view text, std::size_t begin) {
       end += (quote == '"' && text[end] == '\\') ? 2 : 1;
     }
     end += 3;
-    while (end < text.size() && text[end] == quote) ++end;  // a string may end in one or two quotes more
+    while (end < text.size() && text[end] == quote)
+      ++end;  // a string may end in one or two quotes more
     return std::min(end, text.size());
   }
   std::size_t end = begin + 1;
@@ -47,7 +49,8 @@ void check_key_depth(std::string_view text, const std::string& file_name) {
       continue;
     }
     if (c == '.' && ++dots > kMaxDots) {
-      const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
+      const auto line =
+          1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
       throw InputError({file_name, line, 0}, "a dotted key of more than 16 parts",
                        "no key of a deck has more than 3");
     }

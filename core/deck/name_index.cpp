@@ -10,7 +10,8 @@ void NameIndex::add(const std::string& name, const SourcePlace& place) {
   const auto [entry, is_new] = indices_.emplace(name, size());
   if (!is_new) {
     throw InputError(place, fmt::format("a second {} is named '{}'", what_, name),
-                     fmt::format("the first stands in line {}; give each its own name", places_[entry->second].line));
+                     fmt::format("the first stands in line {}; give each its own name",
+                                 places_[entry->second].line));
   }
   places_.push_back(place);
 }

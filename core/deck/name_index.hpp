@@ -14,10 +14,13 @@ class NameIndex {
  public:
   explicit NameIndex(std::string_view what) : what_(what) {}
 
-  void add(const std::string& name, const SourcePlace& place);                   ///< InputError on a duplicate
-  [[nodiscard]] int at(const std::string& name, const SourcePlace& place) const;  ///< InputError with the nearest
+  void add(const std::string& name, const SourcePlace& place);  ///< InputError on a duplicate
+  [[nodiscard]] int at(const std::string& name,
+                       const SourcePlace& place) const;  ///< InputError with the nearest
   [[nodiscard]] int size() const { return static_cast<int>(places_.size()); }
-  [[nodiscard]] const SourcePlace& place(int index) const { return places_[static_cast<std::size_t>(index)]; }
+  [[nodiscard]] const SourcePlace& place(int index) const {
+    return places_[static_cast<std::size_t>(index)];
+  }
 
  private:
   std::string_view what_;

@@ -55,7 +55,8 @@ std::string suggest(std::string_view word, std::span<const std::string_view> can
   if (candidates.empty()) return "there is none";
   constexpr std::size_t kMaxListed = 20;
   const auto listed = candidates.first(std::min(candidates.size(), kMaxListed));
-  return fmt::format("known: {}{}", fmt::join(listed, ", "), candidates.size() > kMaxListed ? ", ..." : "");
+  return fmt::format("known: {}{}", fmt::join(listed, ", "),
+                     candidates.size() > kMaxListed ? ", ..." : "");
 }
 
 }  // namespace barchan::deck

@@ -6,7 +6,8 @@
 
 namespace barchan::deck {
 
-/// The candidate that needs the fewest letters changed, added, dropped or swapped; empty when none comes close.
+/// The candidate that needs the fewest letters changed, added, dropped or swapped; empty when none
+/// comes close.
 std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates);
 
 /// Remedy for an unknown word: "did you mean 'x'?", else the list of what exists.

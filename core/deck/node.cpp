@@ -70,7 +70,9 @@ Node convert(const toml::node& source, const FileName& file) {
 
 }  // namespace
 
-SourcePlace Node::place() const { return {file ? *file : std::string(), line, column}; }
+SourcePlace Node::place() const {
+  return {file ? *file : std::string(), line, column};
+}
 
 const Node::Member* Node::find(std::string_view key) const {
   for (const Member& member : members) {
@@ -85,13 +87,20 @@ Node::Member* Node::find(std::string_view key) {
 
 std::string_view kind_name(Node::Kind kind) {
   switch (kind) {
-    case Node::Kind::Table: return "a table";
-    case Node::Kind::Array: return "an array";
-    case Node::Kind::String: return "a string";
-    case Node::Kind::Integer: return "an integer";
-    case Node::Kind::Float: return "a number";
-    case Node::Kind::Boolean: return "a boolean";
-    case Node::Kind::Date: return "a date or time";
+    case Node::Kind::Table:
+      return "a table";
+    case Node::Kind::Array:
+      return "an array";
+    case Node::Kind::String:
+      return "a string";
+    case Node::Kind::Integer:
+      return "an integer";
+    case Node::Kind::Float:
+      return "a number";
+    case Node::Kind::Boolean:
+      return "a boolean";
+    case Node::Kind::Date:
+      return "a date or time";
   }
   return "nothing";
 }
@@ -103,9 +112,10 @@ Node parse_toml(std::string_view text, const std::string& file_name) {
     return convert(table, std::make_shared<const std::string>(file_name));
   } catch (const toml::parse_error& error) {
     const toml::source_position at = error.source().begin;
-    throw InputError({file_name, static_cast<std::int64_t>(at.line), static_cast<std::int64_t>(at.column)},
-                     fmt::format("this is not TOML: {}", error.description()),
-                     "write `key = value`, one a line, strings in double quotes");
+    throw InputError(
+        {file_name, static_cast<std::int64_t>(at.line), static_cast<std::int64_t>(at.column)},
+        fmt::format("this is not TOML: {}", error.description()),
+        "write `key = value`, one a line, strings in double quotes");
   }
 }
 

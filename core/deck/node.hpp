@@ -8,7 +8,8 @@
 
 #include <barchan/core/error.hpp>
 
-// The tree of a deck's text: every value knows where it stands. Only node.cpp knows the TOML library.
+// The tree of a deck's text: every value knows where it stands. Only node.cpp knows the TOML
+// library.
 
 namespace barchan::deck {
 

@@ -12,7 +12,8 @@ namespace barchan {
 DeckOverride parse_override(std::string_view argument) {
   const std::size_t equals = argument.find('=');
   if (equals == std::string_view::npos || equals == 0) {
-    throw InputError(fmt::format("--set {}: expected key=value", argument), "such as --set time.steps=1000");
+    throw InputError(fmt::format("--set {}: expected key=value", argument),
+                     "such as --set time.steps=1000");
   }
   return {std::string(argument.substr(0, equals)), std::string(argument.substr(equals + 1))};
 }
@@ -21,9 +22,12 @@ namespace deck {
 
 namespace {
 
-std::string label(const DeckOverride& change) { return fmt::format("--set {}={}", change.key, change.value); }
+std::string label(const DeckOverride& change) {
+  return fmt::format("--set {}={}", change.key, change.value);
+}
 
-[[noreturn]] void fail(const DeckOverride& change, const std::string& what, const std::string& remedy) {
+[[noreturn]] void fail(const DeckOverride& change, const std::string& what,
+                       const std::string& remedy) {
   throw InputError({label(change), 0, 0}, what, remedy);
 }
 
@@ -74,7 +78,8 @@ Node parse_value(const DeckOverride& change) {
 
 std::string_view name_of(const Node& table) {
   const Node::Member* name = table.kind == Node::Kind::Table ? table.find("name") : nullptr;
-  return name && name->value.kind == Node::Kind::String ? std::string_view(name->value.text) : std::string_view();
+  return name && name->value.kind == Node::Kind::String ? std::string_view(name->value.text)
+                                                        : std::string_view();
 }
 
 Node& find_item(Node& array, const std::string& part, const DeckOverride& change) {
@@ -87,7 +92,8 @@ Node& find_item(Node& array, const std::string& part, const DeckOverride& change
   }
   std::size_t number = 0;
   const char* end = part.data() + part.size();
-  if (std::from_chars(part.data(), end, number).ptr == end && number >= 1 && number <= array.items.size()) {
+  if (std::from_chars(part.data(), end, number).ptr == end && number >= 1 &&
+      number <= array.items.size()) {
     return array.items[number - 1];
   }
   fail(change, fmt::format("no entry '{}' in an array of {}", part, array.items.size()),

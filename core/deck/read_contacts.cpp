@@ -55,8 +55,9 @@ ContactConstants read_constants(const TableReader& table) {
 /// A material without a stiffness has no constants at all.
 std::optional<ContactConstants> read_own_constants(const TableReader& table) {
   if (table.has("normal_stiffness")) return read_constants(table);
-  for (const char* key : {"tangential_stiffness", "normal_damping", "normal_damping_rate", "restitution",
-                          "tangential_damping", "tangential_damping_rate", "friction"}) {
+  for (const char* key :
+       {"tangential_stiffness", "normal_damping", "normal_damping_rate", "restitution",
+        "tangential_damping", "tangential_damping_rate", "friction"}) {
     if (table.has(key)) {
       table.fail(key, fmt::format("{} without normal_stiffness", key),
                  "add normal_stiffness to the material, or move its constants to a [[pair]]");
@@ -66,7 +67,9 @@ std::optional<ContactConstants> read_own_constants(const TableReader& table) {
 }
 
 /// Two springs, or dashpots, in series, each of which gives `a` with its like.
-double in_series(double a, double b) { return a > 0.0 && b > 0.0 ? 2.0 / (1.0 / a + 1.0 / b) : 0.0; }
+double in_series(double a, double b) {
+  return a > 0.0 && b > 0.0 ? 2.0 / (1.0 / a + 1.0 / b) : 0.0;
+}
 
 bool is_zero(const Dashpot& dashpot) {
   return dashpot.constant == 0.0 && dashpot.rate == 0.0 && dashpot.critical == 0.0;
@@ -84,7 +87,8 @@ std::optional<ContactConstants> mix(const ContactConstants& a, const ContactCons
   const auto cn = in_series(a.cn, b.cn);
   const auto ct = in_series(a.ct, b.ct);
   if (!cn || !ct) return std::nullopt;
-  return ContactConstants{in_series(a.kn, b.kn), in_series(a.kt, b.kt), *cn, *ct, std::min(a.mu, b.mu)};
+  return ContactConstants{in_series(a.kn, b.kn), in_series(a.kt, b.kt), *cn, *ct,
+                          std::min(a.mu, b.mu)};
 }
 
 /// Who can touch whom: walls never touch walls.
@@ -118,7 +122,10 @@ using PairTable = std::vector<std::optional<ContactConstants>>;
 class ContactBuilder {
  public:
   ContactBuilder(const TableReader& root, DeckDraft& draft)
-      : root_(root), draft_(draft), num_(draft.deck.model.materials.size()), explicit_(num_ * num_) {}
+      : root_(root),
+        draft_(draft),
+        num_(draft.deck.model.materials.size()),
+        explicit_(num_ * num_) {}
 
   void read_own() {
     for (const Node* node : root_.tables("material")) {
@@ -127,7 +134,8 @@ class ContactBuilder {
   }
 
   void read_pairs() {
-    for (const Node* node : root_.tables("pair")) read_pair(TableReader(*node, root_.dimension(), "[[pair]]"));
+    for (const Node* node : root_.tables("pair"))
+      read_pair(TableReader(*node, root_.dimension(), "[[pair]]"));
   }
 
   ContactTable build(bool is_mixed) const {
@@ -139,7 +147,8 @@ class ContactBuilder {
       for (std::size_t b = a; b < num_; ++b) {
         const auto constants = find(a, b, is_mixed && users.can_meet(a, b));
         if (!constants && users.can_meet(a, b)) fail_missing(a, b, is_mixed);
-        table.constants[a * num_ + b] = table.constants[b * num_ + a] = constants.value_or(ContactConstants{});
+        table.constants[a * num_ + b] = table.constants[b * num_ + a] =
+            constants.value_or(ContactConstants{});
       }
     }
     return table;
@@ -152,42 +161,50 @@ class ContactBuilder {
       table.fail("materials", fmt::format("materials holds {} names, expected 2", names.size()),
                  "name two materials, or one twice");
     }
-    const auto a = static_cast<std::size_t>(draft_.materials.at(names[0], table.place("materials")));
-    const auto b = static_cast<std::size_t>(draft_.materials.at(names[1], table.place("materials")));
+    const auto a =
+        static_cast<std::size_t>(draft_.materials.at(names[0], table.place("materials")));
+    const auto b =
+        static_cast<std::size_t>(draft_.materials.at(names[1], table.place("materials")));
     if (explicit_[a * num_ + b]) {
-      table.fail("materials", fmt::format("a second [[pair]] of '{}' and '{}'", names[0], names[1]), "keep one");
+      table.fail("materials", fmt::format("a second [[pair]] of '{}' and '{}'", names[0], names[1]),
+                 "keep one");
     }
     explicit_[a * num_ + b] = explicit_[b * num_ + a] = read_constants(table);
   }
 
-  [[nodiscard]] std::optional<ContactConstants> find(std::size_t a, std::size_t b, bool is_mixed) const {
+  [[nodiscard]] std::optional<ContactConstants> find(std::size_t a, std::size_t b,
+                                                     bool is_mixed) const {
     if (explicit_[a * num_ + b]) return explicit_[a * num_ + b];
     if (a == b) return own_[a];
     if (!is_mixed || !own_[a] || !own_[b]) return std::nullopt;
     const auto mixed = mix(*own_[a], *own_[b]);
     if (!mixed) {
-      throw InputError(draft_.materials.place(static_cast<int>(b)),
-                       fmt::format("{} give their damping in different ways, which do not mix", pair_name(a, b)),
-                       fmt::format("give both a coefficient, both a rate or both a restitution, or add a {}",
-                                   pair_text(a, b)));
+      throw InputError(
+          draft_.materials.place(static_cast<int>(b)),
+          fmt::format("{} give their damping in different ways, which do not mix", pair_name(a, b)),
+          fmt::format("give both a coefficient, both a rate or both a restitution, or add a {}",
+                      pair_text(a, b)));
     }
     return mixed;
   }
 
   [[noreturn]] void fail_missing(std::size_t a, std::size_t b, bool is_mixed) const {
-    throw InputError(draft_.materials.place(static_cast<int>(b)),
-                     fmt::format("missing material pair: no contact constants for {}", pair_name(a, b)),
-                     fmt::format("add a {}{}", pair_text(a, b),
-                                 is_mixed || a == b ? ", or give each material its own constants" : ""));
+    throw InputError(
+        draft_.materials.place(static_cast<int>(b)),
+        fmt::format("missing material pair: no contact constants for {}", pair_name(a, b)),
+        fmt::format("add a {}{}", pair_text(a, b),
+                    is_mixed || a == b ? ", or give each material its own constants" : ""));
   }
 
   [[nodiscard]] std::string pair_name(std::size_t a, std::size_t b) const {
-    return fmt::format("'{}' and '{}'", draft_.deck.model.materials[a].name, draft_.deck.model.materials[b].name);
+    return fmt::format("'{}' and '{}'", draft_.deck.model.materials[a].name,
+                       draft_.deck.model.materials[b].name);
   }
 
   [[nodiscard]] std::string pair_text(std::size_t a, std::size_t b) const {
     const auto& materials = draft_.deck.model.materials;
-    return fmt::format("[[pair]] with materials = [\"{}\", \"{}\"]", materials[a].name, materials[b].name);
+    return fmt::format("[[pair]] with materials = [\"{}\", \"{}\"]", materials[a].name,
+                       materials[b].name);
   }
 
   const TableReader& root_;

@@ -45,14 +45,17 @@ RingSource read_ring(const TableReader& table, const DeckDraft& draft) {
   if (ring.count < 3 || ring.count > kMaxRing) {
     table.fail("count", fmt::format("a ring of {} disks", ring.count), "write 3 to 1000000 disks");
   }
-  const double touching = ring.radius * std::sin(std::numbers::pi / static_cast<double>(ring.count));
+  const double touching =
+      ring.radius * std::sin(std::numbers::pi / static_cast<double>(ring.count));
   ring.disk_radius = table.optional_number("disk_radius").value_or(touching);
   if (ring.disk_radius > touching * (1.0 + 1e-9)) {
-    table.fail("disk_radius", fmt::format("disks of radius {} overlap along the ring", ring.disk_radius),
+    table.fail("disk_radius",
+               fmt::format("disks of radius {} overlap along the ring", ring.disk_radius),
                fmt::format("neighbours touch at {} m", touching));
   }
   const Vec3 reach(ring.radius + ring.disk_radius, ring.radius + ring.disk_radius, 0.0);
-  check_inside({ring.center - reach, ring.center + reach}, draft.deck.model, table.place("center"), "the ring");
+  check_inside({ring.center - reach, ring.center + reach}, draft.deck.model, table.place("center"),
+               "the ring");
   return ring;
 }
 
@@ -66,7 +69,8 @@ ParticleData defaults_of(const ParticleSource& source) {
   return particle;
 }
 
-ParticleData read_particle(const TableReader& table, const ParticleData& defaults, const DeckDraft& draft) {
+ParticleData read_particle(const TableReader& table, const ParticleData& defaults,
+                           const DeckDraft& draft) {
   const Model& model = draft.deck.model;
   ParticleData particle = defaults;
   particle.position = table.vector("position");
@@ -82,11 +86,13 @@ ParticleData read_particle(const TableReader& table, const ParticleData& default
   }
   if (particle.density == 0.0) particle.density = model.materials[particle.type].density;
   particle.density = table.optional_number("density").value_or(particle.density);
-  check_inside({particle.position, particle.position}, model, table.place("position"), "the particle");
+  check_inside({particle.position, particle.position}, model, table.place("position"),
+               "the particle");
   return particle;
 }
 
-ListSource read_list(const TableReader& table, const ParticleSource& source, const DeckDraft& draft) {
+ListSource read_list(const TableReader& table, const ParticleSource& source,
+                     const DeckDraft& draft) {
   ListSource list;
   const ParticleData defaults = defaults_of(source);
   const auto nodes = table.tables("particle");
@@ -95,7 +101,8 @@ ListSource read_list(const TableReader& table, const ParticleSource& source, con
                "write 1 to 100000; more of them belong into a file");
   }
   for (const Node* node : nodes) {
-    list.particles.push_back(read_particle(TableReader(*node, table.dimension(), "particle"), defaults, draft));
+    list.particles.push_back(
+        read_particle(TableReader(*node, table.dimension(), "particle"), defaults, draft));
   }
   return list;
 }
@@ -109,18 +116,21 @@ std::optional<Box> read_fixed(const TableReader& table) {
   return Box{Vec3::Constant(-kEndless), Vec3::Constant(kEndless)};
 }
 
-ParticleSource read_common(const TableReader& table, const DeckDraft& draft, const std::string& kind) {
+ParticleSource read_common(const TableReader& table, const DeckDraft& draft,
+                           const std::string& kind) {
   ParticleSource source;
   source.place = table.place();
   if (const auto material = table.optional_string("material")) {
     source.material = draft.materials.at(*material, table.place("material"));
   } else if (kind != "file" && kind != "list") {
-    throw InputError(table.place(), "[[particles]] lacks the key 'material'", "add material = \"<name of a material>\"");
+    throw InputError(table.place(), "[[particles]] lacks the key 'material'",
+                     "add material = \"<name of a material>\"");
   }
   source.density = table.optional_number("density");
   source.velocity = table.vector("velocity");
   source.omega = table.spin("omega");
-  if (const auto bond = table.optional_string("bond")) source.bond = draft.bonds.at(*bond, table.place("bond"));
+  if (const auto bond = table.optional_string("bond"))
+    source.bond = draft.bonds.at(*bond, table.place("bond"));
   source.fixed = read_fixed(table);
   return source;
 }
@@ -140,7 +150,8 @@ std::string read_kind(const Node& node) {
 void read_particles(const TableReader& root, DeckDraft& draft) {
   const auto nodes = root.tables("particles");
   if (nodes.empty() || nodes.size() > kMaxSources) {
-    root.fail("particles", fmt::format("{} tables of [[particles]]", nodes.size()), "write 1 to 1000 of them");
+    root.fail("particles", fmt::format("{} tables of [[particles]]", nodes.size()),
+              "write 1 to 1000 of them");
   }
   for (const Node* node : nodes) {
     const std::string kind = read_kind(*node);

@@ -25,7 +25,9 @@ void check_room(const TableReader& table, const Box& region, double needed) {
   for (int axis = 0; axis < table.dimension(); ++axis) {
     const double extent = region.hi[axis] - region.lo[axis];
     if (extent < needed * (1.0 - kSlack)) {
-      table.fail("region", fmt::format("the region is {} m thin, too thin for one particle that takes {} m", extent, needed),
+      table.fail("region",
+                 fmt::format("the region is {} m thin, too thin for one particle that takes {} m",
+                             extent, needed),
                  "widen the region or use smaller radii");
     }
   }
@@ -33,7 +35,8 @@ void check_room(const TableReader& table, const Box& region, double needed) {
 
 void check_count(const TableReader& table, std::string_view key, double count) {
   if (!(count <= kMaxParticles)) {
-    table.fail(key, fmt::format("this asks for {:.3g} particles", count), "at most 2e9; use larger radii");
+    table.fail(key, fmt::format("this asks for {:.3g} particles", count),
+               "at most 2e9; use larger radii");
   }
 }
 
@@ -43,7 +46,8 @@ LatticeSource::Arrangement read_arrangement(const TableReader& table) {
   if (!table.has("arrangement")) return is_2d ? Arrangement::Square : Arrangement::Cubic;
   const std::string name = table.string("arrangement");
   if (is_2d != (name == "square" || name == "hexagonal")) {
-    table.fail("arrangement", fmt::format("arrangement = \"{}\" in {} dimensions", name, table.dimension()),
+    table.fail("arrangement",
+               fmt::format("arrangement = \"{}\" in {} dimensions", name, table.dimension()),
                is_2d ? "in 2D write square or hexagonal" : "in 3D write cubic or fcc");
   }
   if (is_2d) return name == "square" ? Arrangement::Square : Arrangement::Hexagonal;
@@ -66,17 +70,22 @@ std::vector<Hole> read_holes(const TableReader& table) {
 /// `count` or `solid_fraction`, one of them.
 void read_amount(const TableReader& table, PackingSource& packing) {
   if (!table.has_one_of("count", "solid_fraction")) {
-    table.fail("", "this packing says nowhere how many particles it has", "add count or solid_fraction");
+    table.fail("", "this packing says nowhere how many particles it has",
+               "add count or solid_fraction");
   }
   packing.count = table.optional_integer("count");
   packing.solid_fraction = table.optional_number("solid_fraction");
   const double space = measure(packing.region, table.dimension());
   const double each = mean_measure(packing.sizes, table.dimension());
-  const double wanted = packing.count ? static_cast<double>(*packing.count) : *packing.solid_fraction * space / each;
+  const double wanted =
+      packing.count ? static_cast<double>(*packing.count) : *packing.solid_fraction * space / each;
   check_count(table, packing.count ? "count" : "solid_fraction", wanted);
   if (packing.count && wanted * each > space) {
-    table.fail("count", fmt::format("{} particles fill {:.3g} times the region", *packing.count, wanted * each / space),
-               fmt::format("random packings fill about {} of it", table.dimension() == 2 ? 0.8 : 0.6));
+    table.fail(
+        "count",
+        fmt::format("{} particles fill {:.3g} times the region", *packing.count,
+                    wanted * each / space),
+        fmt::format("random packings fill about {} of it", table.dimension() == 2 ? 0.8 : 0.6));
   }
 }
 
@@ -90,7 +99,9 @@ LatticeSource read_lattice(const TableReader& table, const Model& model) {
   const double diameter = 2.0 * lattice.sizes.max_radius();
   lattice.spacing = table.optional_number("spacing").value_or(diameter);
   if (lattice.spacing < diameter * (1.0 - kSlack)) {
-    table.fail("spacing", fmt::format("particles of diameter {} overlap at a spacing of {}", diameter, lattice.spacing),
+    table.fail("spacing",
+               fmt::format("particles of diameter {} overlap at a spacing of {}", diameter,
+                           lattice.spacing),
                fmt::format("write at least {}", diameter));
   }
   lattice.jitter = table.number("jitter");

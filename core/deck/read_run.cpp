@@ -50,7 +50,8 @@ std::int64_t steps_until(const TableReader& table, double end, double step) {
   constexpr double kMaxSteps = 1e15;
   const double steps = end / step;
   if (!(steps < kMaxSteps)) {
-    table.fail("end", fmt::format("end = {} s takes {} steps of {} s", end, steps, step), "at most 1e15 are possible");
+    table.fail("end", fmt::format("end = {} s takes {} steps of {} s", end, steps, step),
+               "at most 1e15 are possible");
   }
   if (steps < 0.5) {
     table.fail("end", fmt::format("end = {} s lies before the first step of {} s", end, step),
@@ -65,7 +66,8 @@ TimeSpec read_time(const TableReader& root) {
   time.step = table.number("step");
   time.allow_unstable = table.boolean("allow_unstable");
   if (!table.has_one_of("end", "steps")) {
-    table.fail("", "[time] says nowhere when the run ends", "add end = <seconds> or steps = <number of steps>");
+    table.fail("", "[time] says nowhere when the run ends",
+               "add end = <seconds> or steps = <number of steps>");
   }
   const auto end = table.optional_number("end");
   time.num_steps = end ? steps_until(table, *end, time.step) : *table.optional_integer("steps");
@@ -82,7 +84,8 @@ void read_options(const TableReader& root, Model& model) {
   const Node empty = empty_table(root);
   const auto node = [&](std::string_view key) { return root.has(key) ? root.table(key) : &empty; };
   const TableReader search(*node("search"), root.dimension(), "[search]");
-  model.search.kind = search.string("kind") == "cells" ? ContactSearchKind::Cells : ContactSearchKind::AllPairs;
+  model.search.kind =
+      search.string("kind") == "cells" ? ContactSearchKind::Cells : ContactSearchKind::AllPairs;
   model.search.skin = search.optional_number("skin");
 
   const TableReader output(*node("output"), root.dimension(), "[output]");
@@ -94,7 +97,8 @@ void read_options(const TableReader& root, Model& model) {
   model.checkpoint.every_steps = checkpoint.integer("every_steps");
   model.checkpoint.every_seconds = checkpoint.number("every_seconds");
   const std::int64_t keep = checkpoint.integer("keep");
-  if (keep > 1000) checkpoint.fail("keep", fmt::format("keep = {} is out of range", keep), "keep at most 1000");
+  if (keep > 1000)
+    checkpoint.fail("keep", fmt::format("keep = {} is out of range", keep), "keep at most 1000");
   model.checkpoint.keep = static_cast<int>(keep);
 }
 
@@ -122,7 +126,8 @@ void read_stages(const TableReader& root, DeckDraft& draft) {
     draft.stages.add(stage.name, table.place("name"));
     const bool is_last = node == nodes.back();
     if (!is_last && std::isinf(stage.max_time) && stage.kinetic_ratio == 0.0) {
-      table.fail("name", fmt::format("stage '{}' never ends, so those after it never begin", stage.name),
+      table.fail("name",
+                 fmt::format("stage '{}' never ends, so those after it never begin", stage.name),
                  "give it max_time or kinetic_ratio");
     }
     stages.push_back(stage);

@@ -22,13 +22,16 @@ RadiusClass read_class(const Node& node, int dimension) {
 }
 
 RadiusClass read_range(const Node& node) {
-  constexpr const char* kRemedy = "write one radius, [min, max], or [{ radius = ..., weight = ... }, ...]";
+  constexpr const char* kRemedy =
+      "write one radius, [min, max], or [{ radius = ..., weight = ... }, ...]";
   if (node.items.size() != 2) {
-    throw InputError(node.place(), fmt::format("radius: an array of {} numbers", node.items.size()), kRemedy);
+    throw InputError(node.place(), fmt::format("radius: an array of {} numbers", node.items.size()),
+                     kRemedy);
   }
   const RadiusClass range{read_radius(node.items[0]), read_radius(node.items[1]), 1.0};
   if (range.max < range.min) {
-    throw InputError(node.place(), fmt::format("radius: the range {} to {} is empty", range.min, range.max),
+    throw InputError(node.place(),
+                     fmt::format("radius: the range {} to {} is empty", range.min, range.max),
                      "write the smaller radius first");
   }
   return range;
@@ -55,8 +58,9 @@ double mean_measure(const SizeDistribution& sizes, int dimension) {
   for (const RadiusClass& size : sizes.classes) {
     const double a = size.min;
     const double b = size.max;
-    const double mean = dimension == 2 ? std::numbers::pi * (a * a + a * b + b * b) / 3.0
-                                       : 4.0 / 3.0 * std::numbers::pi * (a + b) * (a * a + b * b) / 4.0;
+    const double mean = dimension == 2
+                            ? std::numbers::pi * (a * a + a * b + b * b) / 3.0
+                            : 4.0 / 3.0 * std::numbers::pi * (a + b) * (a * a + b * b) / 4.0;
     total += size.weight * mean;
     weights += size.weight;
   }

@@ -29,12 +29,13 @@ BondLaw read_bond(const TableReader& table) {
 Vec3 read_normal(const TableReader& table) {
   const Vec3 normal = table.vector("normal");
   const double largest = normal.cwiseAbs().maxCoeff();
-  if (largest == 0.0) table.fail("normal", "normal is the zero vector", "point it from the wall to the particles");
+  if (largest == 0.0)
+    table.fail("normal", "normal is the zero vector", "point it from the wall to the particles");
   return (normal / largest).normalized();  // safe for the longest and shortest vectors
 }
 
-void refuse_on(const TableReader& table, std::initializer_list<const char*> keys, const std::string& what,
-               const std::string& remedy) {
+void refuse_on(const TableReader& table, std::initializer_list<const char*> keys,
+               const std::string& what, const std::string& remedy) {
   for (const char* key : keys) {
     if (table.has(key)) table.fail(key, fmt::format("{} on {}", key, what), remedy);
   }
@@ -42,7 +43,8 @@ void refuse_on(const TableReader& table, std::initializer_list<const char*> keys
 
 double required(const TableReader& table, const char* key, const std::string& what) {
   const auto number = table.optional_number(key);
-  if (!number) table.fail("name", fmt::format("{} lacks the key '{}'", what, key), fmt::format("add {}", key));
+  if (!number)
+    table.fail("name", fmt::format("{} lacks the key '{}'", what, key), fmt::format("add {}", key));
   return *number;
 }
 
@@ -55,7 +57,8 @@ void read_plate(const TableReader& table, WallSpec& wall) {
     refuse_on(table, {"depth"}, "a plate in 2D", "remove it: depth is unit thickness there");
   }
   if (!table.has("load")) {
-    refuse_on(table, {"mass", "damping"}, "a plate without load", "add load, or remove it: the velocity is given");
+    refuse_on(table, {"mass", "damping"}, "a plate without load",
+              "add load, or remove it: the velocity is given");
     return;
   }
   wall.is_loaded = true;

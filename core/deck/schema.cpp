@@ -31,25 +31,44 @@ const KeySpec* find_key(std::string_view table, std::string_view key) {
 
 std::string type_text(const KeySpec& spec) {
   switch (spec.type) {
-    case ValueType::Number: return "number";
-    case ValueType::PositiveNumber: return "number > 0";
-    case ValueType::NonNegativeNumber: return "number >= 0";
-    case ValueType::Restitution: return "number in (0, 1]";
-    case ValueType::Fraction: return "number in [0, 1]";
-    case ValueType::ProperFraction: return "number in (0, 1)";
-    case ValueType::Integer: return "integer";
-    case ValueType::PositiveInteger: return "integer > 0";
-    case ValueType::NonNegativeInteger: return "integer >= 0";
-    case ValueType::Boolean: return "boolean";
-    case ValueType::String: return "string";
-    case ValueType::Choice: return fmt::format("{}", fmt::join(split_choices(spec.choices), ", "));
-    case ValueType::Vector: return "vector";
-    case ValueType::Spin: return "2D number, 3D vector";
-    case ValueType::Names: return "array of strings";
-    case ValueType::Radius: return "number > 0, [min, max] or size classes";
-    case ValueType::Fixed: return "boolean or box";
-    case ValueType::Table: return "table";
-    case ValueType::Tables: return "array of tables";
+    case ValueType::Number:
+      return "number";
+    case ValueType::PositiveNumber:
+      return "number > 0";
+    case ValueType::NonNegativeNumber:
+      return "number >= 0";
+    case ValueType::Restitution:
+      return "number in (0, 1]";
+    case ValueType::Fraction:
+      return "number in [0, 1]";
+    case ValueType::ProperFraction:
+      return "number in (0, 1)";
+    case ValueType::Integer:
+      return "integer";
+    case ValueType::PositiveInteger:
+      return "integer > 0";
+    case ValueType::NonNegativeInteger:
+      return "integer >= 0";
+    case ValueType::Boolean:
+      return "boolean";
+    case ValueType::String:
+      return "string";
+    case ValueType::Choice:
+      return fmt::format("{}", fmt::join(split_choices(spec.choices), ", "));
+    case ValueType::Vector:
+      return "vector";
+    case ValueType::Spin:
+      return "2D number, 3D vector";
+    case ValueType::Names:
+      return "array of strings";
+    case ValueType::Radius:
+      return "number > 0, [min, max] or size classes";
+    case ValueType::Fixed:
+      return "boolean or box";
+    case ValueType::Table:
+      return "table";
+    case ValueType::Tables:
+      return "array of tables";
   }
   return {};
 }
@@ -70,7 +89,8 @@ std::vector<KeyDoc> deck_keys() {
   std::vector<KeyDoc> docs;
   for (const deck::KeySpec& spec : deck::key_specs()) {
     docs.push_back({std::string(spec.table), std::string(spec.key), deck::type_text(spec),
-                    std::string(spec.unit), std::string(spec.default_value), std::string(spec.meaning)});
+                    std::string(spec.unit), std::string(spec.default_value),
+                    std::string(spec.meaning)});
   }
   return docs;
 }

@@ -5,13 +5,15 @@
 #include <string_view>
 #include <vector>
 
-// Every key that a deck may hold, once: the parser refuses what is not here, and docs/deck.md is held against it.
+// Every key that a deck may hold, once: the parser refuses what is not here, and docs/deck.md is
+// held against it.
 
 namespace barchan {
 
 /// One row of the deck reference.
 struct KeyDoc {
-  std::string table;  ///< as the reference heads it: `deck` for the top level, `[time]`, `[[wall]]`, ...
+  std::string
+      table;  ///< as the reference heads it: `deck` for the top level, `[time]`, `[[wall]]`, ...
   std::string key;
   std::string type;
   std::string unit;           ///< empty for none
@@ -28,20 +30,20 @@ enum class ValueType {
   Number,
   PositiveNumber,
   NonNegativeNumber,
-  Restitution,  ///< (0, 1]
-  Fraction,     ///< [0, 1]
+  Restitution,     ///< (0, 1]
+  Fraction,        ///< [0, 1]
   ProperFraction,  ///< (0, 1)
   Integer,
   PositiveInteger,
   NonNegativeInteger,
   Boolean,
   String,
-  Choice,   ///< one of the words in KeySpec::choices
-  Vector,   ///< as many numbers as the deck has dimensions
-  Spin,     ///< 2D a number, 3D three
-  Names,    ///< array of strings
-  Radius,   ///< number, [min, max] or array of size classes
-  Fixed,    ///< boolean or box
+  Choice,  ///< one of the words in KeySpec::choices
+  Vector,  ///< as many numbers as the deck has dimensions
+  Spin,    ///< 2D a number, 3D three
+  Names,   ///< array of strings
+  Radius,  ///< number, [min, max] or array of size classes
+  Fixed,   ///< boolean or box
   Table,
   Tables
 };

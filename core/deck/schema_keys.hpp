@@ -6,7 +6,8 @@
 
 namespace barchan::deck {
 
-std::span<const KeySpec> run_keys();       ///< top level, domain, time, stages, search, output, checkpoint
+std::span<const KeySpec>
+run_keys();  ///< top level, domain, time, stages, search, output, checkpoint
 std::span<const KeySpec> physics_keys();   ///< materials, pairs, contact, bonds, walls
 std::span<const KeySpec> particle_keys();  ///< sources of particles
 

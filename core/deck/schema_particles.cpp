@@ -7,31 +7,38 @@ namespace {
 using T = ValueType;
 
 constexpr KeySpec kParticleKeys[] = {
-    {"[[particles]]", "kind", T::Choice, "", "required", "which source this is; its own keys follow below",
-     "file|lattice|packing|ring|list"},
+    {"[[particles]]", "kind", T::Choice, "", "required",
+     "which source this is; its own keys follow below", "file|lattice|packing|ring|list"},
     {"[[particles]]", "material", T::String, "", "required; file: the `type` column",
      "name of a material"},
-    {"[[particles]]", "density", T::PositiveNumber, "kg/m³, 2D kg/m²", "the material's", "instead of it"},
-    {"[[particles]]", "velocity", T::Vector, "m/s", "zero", "at the start; added to that of a file"},
+    {"[[particles]]", "density", T::PositiveNumber, "kg/m³, 2D kg/m²", "the material's",
+     "instead of it"},
+    {"[[particles]]", "velocity", T::Vector, "m/s", "zero",
+     "at the start; added to that of a file"},
     {"[[particles]]", "omega", T::Spin, "rad/s", "zero", "likewise, turning; in 2D about z"},
     {"[[particles]]", "bond", T::String, "", "none",
      "name of a bond law that links those of this source that touch"},
     {"[[particles]]", "fixed", T::Fixed, "", "false",
-     "particles that never move: all of them, or those with centres in a box `{ lo = ..., hi = ... }`"},
+     "particles that never move: all of them, or those with centres in a box `{ lo = ..., hi = ... "
+     "}`"},
 
     {"file", "path", T::String, "", "required",
-     "`.csv` with a header, or LAMMPS data (atom style sphere) ending in `.data`; relative to the deck"},
+     "`.csv` with a header, or LAMMPS data (atom style sphere) ending in `.data`; relative to the "
+     "deck"},
 
-    {"lattice", "region", T::Table, "m", "required", "box `{ lo = ..., hi = ... }` that holds the particles"},
+    {"lattice", "region", T::Table, "m", "required",
+     "box `{ lo = ..., hi = ... }` that holds the particles"},
     {"lattice", "radius", T::Radius, "m", "required", "one radius, a range, or classes"},
     {"lattice", "spacing", T::PositiveNumber, "m", "twice the largest radius",
      "between nearest sites, the first half of it from `lo`"},
-    {"lattice", "arrangement", T::Choice, "", "square or cubic", "of the sites: 2D square, hexagonal; 3D cubic, fcc",
-     "square|hexagonal|cubic|fcc"},
-    {"lattice", "jitter", T::Fraction, "", "0", "random shift, as a share of the free gap about a particle"},
+    {"lattice", "arrangement", T::Choice, "", "square or cubic",
+     "of the sites: 2D square, hexagonal; 3D cubic, fcc", "square|hexagonal|cubic|fcc"},
+    {"lattice", "jitter", T::Fraction, "", "0",
+     "random shift, as a share of the free gap about a particle"},
     {"lattice", "seed", T::NonNegativeInteger, "", "1", "of radii and jitter"},
 
-    {"packing", "region", T::Table, "m", "required", "box `{ lo = ..., hi = ... }` that holds the particles"},
+    {"packing", "region", T::Table, "m", "required",
+     "box `{ lo = ..., hi = ... }` that holds the particles"},
     {"packing", "radius", T::Radius, "m", "required", "one radius, a range, or classes"},
     {"packing", "count", T::PositiveInteger, "", "none", "particles; this or `solid_fraction`"},
     {"packing", "solid_fraction", T::ProperFraction, "", "none",
@@ -40,10 +47,13 @@ constexpr KeySpec kParticleKeys[] = {
     {"packing", "seed", T::NonNegativeInteger, "", "1", "of radii and positions"},
 
     {"ring", "center", T::Vector, "m", "required", "of the ring (2D only)"},
-    {"ring", "radius", T::PositiveNumber, "m", "required", "from the centre to the centres of the disks"},
+    {"ring", "radius", T::PositiveNumber, "m", "required",
+     "from the centre to the centres of the disks"},
     {"ring", "count", T::PositiveInteger, "", "required", "disks, at least 3"},
-    {"ring", "disk_radius", T::PositiveNumber, "m", "radius · sin(π / count)", "by default neighbours just touch"},
-    {"ring", "start_angle", T::Number, "rad", "0", "of the first disk from the x axis, counter-clockwise"},
+    {"ring", "disk_radius", T::PositiveNumber, "m", "radius · sin(π / count)",
+     "by default neighbours just touch"},
+    {"ring", "start_angle", T::Number, "rad", "0",
+     "of the first disk from the x axis, counter-clockwise"},
 
     {"list", "particle", T::Tables, "", "required", "the particles, one table each"},
 
@@ -52,7 +62,8 @@ constexpr KeySpec kParticleKeys[] = {
     {"particle", "velocity", T::Vector, "m/s", "that of the source", "at the start"},
     {"particle", "omega", T::Spin, "rad/s", "that of the source", "at the start; in 2D about z"},
     {"particle", "material", T::String, "", "that of the source", "name of a material"},
-    {"particle", "density", T::PositiveNumber, "kg/m³, 2D kg/m²", "that of the source", "instead of the material's"},
+    {"particle", "density", T::PositiveNumber, "kg/m³, 2D kg/m²", "that of the source",
+     "instead of the material's"},
 
     {"box", "lo", T::Vector, "m", "required", "lower corner"},
     {"box", "hi", T::Vector, "m", "required", "upper corner"},
@@ -61,11 +72,14 @@ constexpr KeySpec kParticleKeys[] = {
     {"hole", "radius", T::PositiveNumber, "m", "required", "of it"},
 
     {"size class", "radius", T::PositiveNumber, "m", "required", "of the particles in this class"},
-    {"size class", "weight", T::PositiveNumber, "", "1", "share by number, relative to the other classes"},
+    {"size class", "weight", T::PositiveNumber, "", "1",
+     "share by number, relative to the other classes"},
 };
 
 }  // namespace
 
-std::span<const KeySpec> particle_keys() { return kParticleKeys; }
+std::span<const KeySpec> particle_keys() {
+  return kParticleKeys;
+}
 
 }  // namespace barchan::deck

@@ -8,7 +8,8 @@ using T = ValueType;
 
 constexpr KeySpec kRunKeys[] = {
     {"deck", "title", T::String, "", "none", "a line about the run, kept in its results"},
-    {"deck", "dimension", T::Integer, "", "required", "2 for disks of unit thickness, 3 for spheres"},
+    {"deck", "dimension", T::Integer, "", "required",
+     "2 for disks of unit thickness, 3 for spheres"},
     {"deck", "gravity", T::Vector, "m/s²", "zero", "acceleration of every particle"},
     {"deck", "domain", T::Table, "", "required", "the box that bounds the particles"},
     {"deck", "time", T::Table, "", "required", "step and length of the run"},
@@ -38,13 +39,17 @@ constexpr KeySpec kRunKeys[] = {
 
     {"[[stage]]", "name", T::String, "", "required", "unique"},
     {"[[stage]]", "local_damping", T::Fraction, "", "0",
-     "Cundall's alpha: each component of force is reduced by this share of itself, against the motion"},
-    {"[[stage]]", "max_time", T::PositiveNumber, "s", "none", "the stage ends after this time at the latest"},
+     "Cundall's alpha: each component of force is reduced by this share of itself, against the "
+     "motion"},
+    {"[[stage]]", "max_time", T::PositiveNumber, "s", "none",
+     "the stage ends after this time at the latest"},
     {"[[stage]]", "kinetic_ratio", T::NonNegativeNumber, "", "0",
-     "the stage ends when kinetic energy over the sum of force times radius falls below; 0 = never"},
+     "the stage ends when kinetic energy over the sum of force times radius falls below; 0 = "
+     "never"},
 
     {"[search]", "kind", T::Choice, "", "cells",
-     "`cells` with lists of candidates, or every pair with every other, as a reference", "cells|all-pairs"},
+     "`cells` with lists of candidates, or every pair with every other, as a reference",
+     "cells|all-pairs"},
     {"[search]", "skin", T::NonNegativeNumber, "m", "chosen from the radii",
      "gap up to which a pair is kept as a candidate"},
 
@@ -54,14 +59,18 @@ constexpr KeySpec kRunKeys[] = {
      "between snapshots; 0 = only the first and the last state"},
     {"[output]", "picture", T::Boolean, "", "true", "draw the last state as `picture.png`"},
 
-    {"[checkpoint]", "every_steps", T::NonNegativeInteger, "steps", "0", "between checkpoints; 0 = not by steps"},
+    {"[checkpoint]", "every_steps", T::NonNegativeInteger, "steps", "0",
+     "between checkpoints; 0 = not by steps"},
     {"[checkpoint]", "every_seconds", T::NonNegativeNumber, "s", "0",
      "of wall-clock time between checkpoints; 0 = not by time"},
-    {"[checkpoint]", "keep", T::PositiveInteger, "", "2", "how many checkpoints stay, the newest ones"},
+    {"[checkpoint]", "keep", T::PositiveInteger, "", "2",
+     "how many checkpoints stay, the newest ones"},
 };
 
 }  // namespace
 
-std::span<const KeySpec> run_keys() { return kRunKeys; }
+std::span<const KeySpec> run_keys() {
+  return kRunKeys;
+}
 
 }  // namespace barchan::deck

@@ -17,18 +17,22 @@ Number parse_default(const KeySpec& spec) {
   Number value{};
   const char* end = spec.default_value.data() + spec.default_value.size();
   if (std::from_chars(spec.default_value.data(), end, value).ptr != end) {
-    throw std::logic_error(fmt::format("schema: {} {} has no default to read", spec.table, spec.key));
+    throw std::logic_error(
+        fmt::format("schema: {} {} has no default to read", spec.table, spec.key));
   }
   return value;
 }
 
 }  // namespace
 
-TableReader::TableReader(const Node& node, int dimension, std::string_view table, std::string_view more)
+TableReader::TableReader(const Node& node, int dimension, std::string_view table,
+                         std::string_view more)
     : node_(node), dimension_(dimension), table_(table), more_(more) {
-  if (node.kind != Node::Kind::Table) fail_type(node, table, "a table", "write { key = value, ... } or a header");
+  if (node.kind != Node::Kind::Table)
+    fail_type(node, table, "a table", "write { key = value, ... } or a header");
   for (const Node::Member& member : node.members) {
-    if (!find_key(table, member.key) && (more.empty() || !find_key(more, member.key))) refuse_unknown(member);
+    if (!find_key(table, member.key) && (more.empty() || !find_key(more, member.key)))
+      refuse_unknown(member);
   }
 }
 
@@ -75,7 +79,8 @@ SourcePlace TableReader::place(std::string_view key) const {
   return member ? member->value.place() : node_.place();
 }
 
-void TableReader::fail(std::string_view key, const std::string& what, const std::string& remedy) const {
+void TableReader::fail(std::string_view key, const std::string& what,
+                       const std::string& remedy) const {
   throw InputError(place(key), what, remedy);
 }
 
@@ -111,7 +116,8 @@ std::int64_t TableReader::integer(std::string_view key) const {
 bool TableReader::boolean(std::string_view key) const {
   const Node* found = value(key);
   if (!found) return spec(key).default_value == "true";
-  if (found->kind != Node::Kind::Boolean) fail_type(*found, key, "a boolean", "write true or false");
+  if (found->kind != Node::Kind::Boolean)
+    fail_type(*found, key, "a boolean", "write true or false");
   return found->boolean;
 }
 
@@ -141,10 +147,12 @@ Vec3 TableReader::spin(std::string_view key) const {
 std::vector<std::string> TableReader::names(std::string_view key) const {
   const Node* found = value(key);
   if (!found) return {};
-  if (found->kind != Node::Kind::Array) fail_type(*found, key, "an array of strings", "write [\"...\", \"...\"]");
+  if (found->kind != Node::Kind::Array)
+    fail_type(*found, key, "an array of strings", "write [\"...\", \"...\"]");
   std::vector<std::string> words;
   for (const Node& item : found->items) {
-    if (item.kind != Node::Kind::String) fail_type(item, key, "a string", "write it in double quotes");
+    if (item.kind != Node::Kind::String)
+      fail_type(item, key, "a string", "write it in double quotes");
     words.push_back(item.text);
   }
   return words;
@@ -158,7 +166,8 @@ std::vector<const Node*> TableReader::tables(std::string_view key) const {
   }
   std::vector<const Node*> nodes;
   for (const Node& item : found->items) {
-    if (item.kind != Node::Kind::Table) fail_type(item, key, "a table", "write { key = value, ... }");
+    if (item.kind != Node::Kind::Table)
+      fail_type(item, key, "a table", "write { key = value, ... }");
     nodes.push_back(&item);
   }
   return nodes;
@@ -167,7 +176,8 @@ std::vector<const Node*> TableReader::tables(std::string_view key) const {
 const Node* TableReader::table(std::string_view key) const {
   const Node* found = value(key);
   if (found && found->kind != Node::Kind::Table) {
-    fail_type(*found, key, "a table", "write { key = value, ... } or a header with its name in brackets");
+    fail_type(*found, key, "a table",
+              "write { key = value, ... } or a header with its name in brackets");
   }
   return found;
 }

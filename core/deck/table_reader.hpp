@@ -16,7 +16,8 @@ namespace barchan::deck {
 /// Every failure is an InputError with the place of the key or value, and a remedy.
 class TableReader {
  public:
-  /// Refuses unknown keys at once. `more` names a second schema table whose keys may stand here too.
+  /// Refuses unknown keys at once. `more` names a second schema table whose keys may stand here
+  /// too.
   TableReader(const Node& node, int dimension, std::string_view table, std::string_view more = {});
 
   [[nodiscard]] double number(std::string_view key) const;
@@ -37,13 +38,15 @@ class TableReader {
   [[nodiscard]] bool has(std::string_view key) const { return value(key) != nullptr; }
 
   [[nodiscard]] SourcePlace place() const { return node_.place(); }
-  [[nodiscard]] SourcePlace place(std::string_view key) const;  ///< of the value, or of the table without it
+  [[nodiscard]] SourcePlace place(
+      std::string_view key) const;  ///< of the value, or of the table without it
   [[nodiscard]] int dimension() const { return dimension_; }
 
   /// Refuses a second key where only one of two may stand; false when neither does.
   bool has_one_of(std::string_view first, std::string_view second) const;
 
-  [[noreturn]] void fail(std::string_view key, const std::string& what, const std::string& remedy) const;
+  [[noreturn]] void fail(std::string_view key, const std::string& what,
+                         const std::string& remedy) const;
 
  private:
   [[nodiscard]] const KeySpec& spec(std::string_view key) const;

@@ -15,13 +15,19 @@ bool is_in_range(ValueType type, double value) {
   switch (type) {
     case ValueType::PositiveNumber:
     case ValueType::PositiveInteger:
-    case ValueType::Radius: return value > 0.0;
+    case ValueType::Radius:
+      return value > 0.0;
     case ValueType::NonNegativeNumber:
-    case ValueType::NonNegativeInteger: return value >= 0.0;
-    case ValueType::Restitution: return value > 0.0 && value <= 1.0;
-    case ValueType::Fraction: return value >= 0.0 && value <= 1.0;
-    case ValueType::ProperFraction: return value > 0.0 && value < 1.0;
-    default: return true;
+    case ValueType::NonNegativeInteger:
+      return value >= 0.0;
+    case ValueType::Restitution:
+      return value > 0.0 && value <= 1.0;
+    case ValueType::Fraction:
+      return value >= 0.0 && value <= 1.0;
+    case ValueType::ProperFraction:
+      return value > 0.0 && value < 1.0;
+    default:
+      return true;
   }
 }
 
@@ -31,14 +37,16 @@ std::string in_unit(const KeySpec& spec) {
 
 }  // namespace
 
-void fail_type(const Node& node, std::string_view what, std::string_view expected, std::string_view remedy) {
+void fail_type(const Node& node, std::string_view what, std::string_view expected,
+               std::string_view remedy) {
   throw InputError(node.place(),
                    fmt::format("{}: expected {}, found {}", what, expected, kind_name(node.kind)),
                    std::string(remedy));
 }
 
 double finite_number(const Node& node, std::string_view what) {
-  if (!node.is_number()) fail_type(node, what, "a number", "write it without quotes, such as 0.5 or 2e-4");
+  if (!node.is_number())
+    fail_type(node, what, "a number", "write it without quotes, such as 0.5 or 2e-4");
   if (!std::isfinite(node.number)) {
     throw InputError(node.place(), fmt::format("{} is not finite: {}", what, node.number),
                      "write a finite number");
@@ -50,7 +58,8 @@ Vec3 finite_vector(const Node& node, int dimension, std::string_view what) {
   const std::string_view remedy = dimension == 2 ? "in 2D write [x, y]" : "in 3D write [x, y, z]";
   if (node.kind != Node::Kind::Array) fail_type(node, what, "an array of numbers", remedy);
   if (node.items.size() != static_cast<std::size_t>(dimension)) {
-    throw InputError(node.place(), fmt::format("{}: {} numbers, expected {}", what, node.items.size(), dimension),
+    throw InputError(node.place(),
+                     fmt::format("{}: {} numbers, expected {}", what, node.items.size(), dimension),
                      std::string(remedy));
   }
   Vec3 vector = Vec3::Zero();
@@ -76,17 +85,21 @@ std::int64_t checked_integer(const Node& node, const KeySpec& spec) {
 }
 
 std::string checked_string(const Node& node, const KeySpec& spec) {
-  if (node.kind != Node::Kind::String) fail_type(node, spec.key, "a string", "write it in double quotes");
+  if (node.kind != Node::Kind::String)
+    fail_type(node, spec.key, "a string", "write it in double quotes");
   if (spec.type == ValueType::Choice) {
     const auto choices = split_choices(spec.choices);
     for (const std::string_view choice : choices) {
       if (node.text == choice) return node.text;
     }
-    throw InputError(node.place(), fmt::format("{} = \"{}\" is not one of {}", spec.key, node.text, type_text(spec)),
-                     suggest(node.text, choices));
+    throw InputError(
+        node.place(),
+        fmt::format("{} = \"{}\" is not one of {}", spec.key, node.text, type_text(spec)),
+        suggest(node.text, choices));
   }
   if (node.text.empty()) {
-    throw InputError(node.place(), fmt::format("{} is empty", spec.key), "write at least one letter");
+    throw InputError(node.place(), fmt::format("{} is empty", spec.key),
+                     "write at least one letter");
   }
   return node.text;
 }

@@ -20,8 +20,10 @@ double finite_number(const Node& node, std::string_view what);
 /// `dimension` finite numbers; the third stays zero in 2D.
 Vec3 finite_vector(const Node& node, int dimension, std::string_view what);
 
-double checked_number(const Node& node, const KeySpec& spec);  ///< finite and in the range of its type
+double checked_number(const Node& node,
+                      const KeySpec& spec);  ///< finite and in the range of its type
 std::int64_t checked_integer(const Node& node, const KeySpec& spec);
-std::string checked_string(const Node& node, const KeySpec& spec);  ///< a Choice must be one of its words
+std::string checked_string(const Node& node,
+                           const KeySpec& spec);  ///< a Choice must be one of its words
 
 }  // namespace barchan::deck
