@@ -1,19 +1,17 @@
 """The hosts of the network lab: namespaces that live exactly as long as the processes in them.
 
     netlab (front)               outside; passes signals on, returns the exit status
-      supervisor                 PID 1 of the lab's own PID namespace; own mount and network namespace
+      supervisor                 PID 1 of the lab's own PID namespace; own mounts and network
         forwarder                made the TUN devices here; each was then moved to its host
         holder lab1, lab2, ...   keeps one host: network, host name, IPC, /dev/shm, /sys
-        program                  entered lab1 by the agent; mpirun enters the other hosts by the agent
+        program                  entered lab1 by the agent; mpirun enters the other hosts by it
 
 Nothing has a name outside. When the front dies, however it dies, the kernel kills the supervisor
-(PR_SET_PDEATHSIG) and with PID 1 of a namespace all that is in it, daemons too; namespaces and devices go with
-their last process.
+(PR_SET_PDEATHSIG) and with PID 1 of a namespace all that is in it, daemons too; namespaces and
+devices go with their last process.
 """
 import ctypes
-import hashlib
 import os
-import shutil
 import signal
 import socket
 import subprocess
@@ -24,18 +22,11 @@ import uuid
 
 CLONE_NEWNS, CLONE_NEWUTS, CLONE_NEWIPC = 0x00020000, 0x04000000, 0x08000000
 CLONE_NEWPID, CLONE_NEWNET = 0x20000000, 0x40000000
-MS_BIND, MS_REC, MS_PRIVATE = 4096, 16384, 1 << 18
+MS_BIND, MS_REC, MS_SLAVE = 1 << 12, 1 << 14, 1 << 19
 PR_SET_PDEATHSIG = 1
 GRACE = 5.0  # seconds between asking the program to end and killing it
 AGENT = os.path.join(os.path.dirname(os.path.realpath(__file__)), "agent")
 LIBC = ctypes.CDLL(None, use_errno=True)
-
-
-class Lacking(Exception):
-    """Something that the lab needs is not there; says what and how to get it."""
-
-    def __init__(self, what, remedy):
-        super().__init__(f"needs {what}: {remedy}")
 
 
 def call(name, *arguments):
@@ -46,52 +37,6 @@ def call(name, *arguments):
 
 def mount(source, target, kind, flags=0):
     call("mount", source.encode(), target.encode(), kind.encode() if kind else None, flags, None)
-
-
-def check_machine():
-    if sys.platform != "linux":
-        raise Lacking("Linux", "it is made of network namespaces")
-    if os.geteuid() != 0:
-        raise Lacking("root", "run it by sudo, or in a container started with --privileged")
-    packages = {"ip": "iproute2", "unshare": "util-linux", "nsenter": "util-linux"}
-    for tool, package in packages.items():
-        if not shutil.which(tool):
-            raise Lacking(f"the command '{tool}'", f"install the package {package}")
-    try:
-        os.close(os.open("/dev/net/tun", os.O_RDWR))
-    except OSError as error:
-        raise Lacking(f"/dev/net/tun ({error.strerror})",
-                      "modprobe tun; mkdir -p /dev/net; mknod /dev/net/tun c 10 200; "
-                      "in a container: --device /dev/net/tun --cap-add NET_ADMIN --cap-add SYS_ADMIN") from None
-    probe = subprocess.run(["unshare", "--mount", "--net", "--uts", "--ipc", "--pid", "--fork", "true"],
-                           stderr=subprocess.PIPE, text=True)
-    if probe.returncode != 0:
-        raise Lacking(f"the right to make namespaces ({probe.stderr.strip()})",
-                      "CAP_SYS_ADMIN, in a container --privileged")
-
-
-def find_forwarder(here):
-    """Path of the forwarder: $NETLAB_FORWARDER, or one built from the sources here into the user's cache."""
-    given = os.environ.get("NETLAB_FORWARDER")
-    if given:
-        if not os.access(given, os.X_OK):
-            raise Lacking(f"the forwarder NETLAB_FORWARDER={given}", "build the target netlab_forwarder, or unset it")
-        return given
-    sources = [os.path.join(here, name) for name in ("forwarder.cpp", "tun.hpp", "wire.hpp")]
-    digest = hashlib.sha256(b"".join(open(name, "rb").read() for name in sources)).hexdigest()[:16]
-    cache = os.path.join(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"), "barchan-netlab")
-    path = os.path.join(cache, f"forwarder-{digest}")
-    if not os.access(path, os.X_OK):
-        os.makedirs(cache, exist_ok=True)
-        compiler = os.environ.get("CXX") or shutil.which("c++") or shutil.which("g++")
-        if not compiler:
-            raise Lacking("a C++20 compiler", "install the package g++, or set NETLAB_FORWARDER to a built forwarder")
-        fresh = f"{path}.{os.getpid()}"
-        built = subprocess.run([compiler, "-std=c++20", "-O2", "-o", fresh, sources[0]])
-        if built.returncode != 0:
-            raise Lacking("its forwarder", f"{compiler} does not compile {sources[0]}")
-        os.rename(fresh, path)
-    return path
 
 
 def run(options, forwarder, command):
@@ -144,10 +89,10 @@ class Supervisor:
         signal.signal(signal.SIGTERM, self.end)
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # of a terminal: the program's business
         call("unshare", CLONE_NEWNS | CLONE_NEWNET)
-        mount("none", "/", None, MS_REC | MS_PRIVATE)
+        mount("none", "/", None, MS_REC | MS_SLAVE)
         mount("proc", "/proc", "proc")
-        table = "127.0.0.1 localhost\n" + "".join(f"10.77.0.{i + 1} {n}\n" for i, n in enumerate(self.names))
-        own_file(table, "/etc/hosts")
+        table = [f"10.77.0.{i + 1} {name}\n" for i, name in enumerate(self.names)]
+        own_file("127.0.0.1 localhost\n" + "".join(table), "/etc/hosts")
         self.holders = [self.hold(name) for name in self.names]
         self.start_forwarder(forwarder)
         for index, pid in enumerate(self.holders):
@@ -166,7 +111,8 @@ class Supervisor:
                 socket.sethostname(name)
                 mount("netlab", "/sys", "sysfs")  # shows the devices of this host
                 mount("netlab", "/dev/shm", "tmpfs")
-                own_file(f"{uuid.uuid4()}\n", "/proc/sys/kernel/random/boot_id")  # some libraries tell hosts by it
+                # Some libraries tell hosts apart by it.
+                own_file(f"{uuid.uuid4()}\n", "/proc/sys/kernel/random/boot_id")
                 os.write(write_end, b"ok")
                 while True:
                     signal.pause()
@@ -189,20 +135,24 @@ class Supervisor:
         if o.stats:
             values["stats"] = os.path.abspath(o.stats)
         words = [word for key, value in values.items() for word in (f"--{key}", str(value))]
-        self.forwarder = subprocess.Popen([forwarder] + words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE)
+        self.forwarder = subprocess.Popen([forwarder] + words, stdin=subprocess.DEVNULL,
+                                          stdout=subprocess.PIPE)
         if self.forwarder.stdout.readline() != b"ready\n":
             raise RuntimeError("the forwarder does not start")
 
     def connect(self, index, pid):
         """Moves a host's device into it and sets its network up."""
-        subprocess.run(["ip", "link", "set", f"netlab{index + 1}", "netns", str(pid), "name", "lab0"], check=True)
+        move = f"link set netlab{index + 1} netns {pid} name lab0"
+        subprocess.run(["ip"] + move.split(), check=True)
         batch = (f"link set lo up\nlink set lab0 mtu {self.options.mtu} txqueuelen 10000\n"
                  f"addr add 10.77.0.{index + 1}/24 dev lab0\nlink set lab0 up\n")
         enter = ["nsenter", "--net", "--target", str(pid)]
-        # Delays from pacing (BBR) or neighbour discovery (IPv6) would be the host's, not the network's.
-        tuning = ("for all in all default lab0; do echo 1 > /proc/sys/net/ipv6/conf/$all/disable_ipv6; done 2>/dev/null\n"
-                  "echo cubic > /proc/sys/net/ipv4/tcp_congestion_control 2>/dev/null\n")
-        subprocess.run(enter + ["sh", "-c", tuning + "exec ip -batch -"], input=batch, text=True, check=True)
+        # Pacing (BBR) and neighbour discovery (IPv6) would add delays that are not the network's.
+        # Kernels may allow a namespace only some ways of congestion control, Reno always.
+        tuning = ("echo 1 > /proc/sys/net/ipv6/conf/lab0/disable_ipv6; for way in cubic reno; do "
+                  "echo $way > /proc/sys/net/ipv4/tcp_congestion_control && break; done")
+        subprocess.run(enter + ["sh", "-c", f"({tuning}) 2>/dev/null; exec ip -batch -"],
+                       input=batch, text=True, check=True)
 
     def environment(self):
         env = dict(os.environ)
@@ -218,6 +168,9 @@ class Supervisor:
                  "OMPI_MCA_orte_tmpdir_base": "/dev/shm", "PRTE_MCA_prte_tmpdir_base": "/dev/shm",
                  "UCX_NET_DEVICES": "lab0", "UCX_TLS": "tcp,self,sm",
                  "FI_TCP_IFACE": "lab0", "FI_SOCKETS_IFACE": "lab0"}
+        ranks = len(self.names) * self.options.ranks_per_host
+        if ranks > len(os.sched_getaffinity(0)):  # who spins would starve whom he waits for
+            usual["OMPI_MCA_mpi_yield_when_idle"] = "1"
         given = dict(pair.split("=", 1) for pair in self.options.env)
         return {**usual, **env, **agent, **given}
 
@@ -241,7 +194,7 @@ class Supervisor:
         while True:
             pid, status = os.waitpid(-1, os.WNOHANG)
             if pid == self.forwarder.pid:
-                print("netlab: the forwarder ended, so there is no network any more", file=sys.stderr)
+                print("netlab: the forwarder ended, there is no network any more", file=sys.stderr)
                 return 3
             if pid == program:
                 self.stop_forwarder()

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Round trips and rate of the lab without MPI; to be run on lab1, which `netlab --mpi none -- measure.py ...` does.
+"""Round trips and rate of the lab without MPI; for lab1: netlab --mpi none -- measure.py ...
 
-measure.py rtt [COUNT]     ICMP echo to lab2: median, 1st and 99th percentile [us]; the kernel of lab2 answers
+measure.py rtt [COUNT]     ICMP echo to the kernel of lab2: median, 1st and 99th percentile [us]
 measure.py rate [MBYTES]   one TCP connection to lab2: payload [Mbit/s]
 """
 import os
@@ -34,7 +34,7 @@ def round_trip(link, sequence):
     while time.perf_counter() - start < 2:
         try:
             reply = link.recv(2000)
-        except BlockingIOError:  # polls, as an MPI rank does: waking a sleeper is not the network's time
+        except BlockingIOError:  # polls as a rank does: to be woken is not the network's time
             continue
         now = time.perf_counter()
         if reply[20] == 0 and reply[26:28] == request[6:8]:
