@@ -1,0 +1,30 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace barchan {
+
+/// A sum of doubles that does not depend on their order: a fixed-point number of 32-bit digits from 2^-288 to 2^320.
+///
+/// Every digit is an int64, so partial sums of up to 2^30 terms may be added digit by digit in any order, on any
+/// rank (an integer MPI_SUM). Bits below 2^-288 are cut off term by term. Non-finite terms make the sum NaN.
+class ExactSum {
+ public:
+  static constexpr int kDigits = 20;
+  using Digits = std::array<std::int64_t, kDigits>;
+
+  void add(double term);
+  void add(const ExactSum& other) {
+    for (std::size_t d = 0; d < kDigits; ++d) digits_[d] += other.digits_[d];
+  }
+  /// The sum, rounded once (to within an ulp).
+  [[nodiscard]] double value() const;
+  [[nodiscard]] const Digits& digits() const { return digits_; }
+  [[nodiscard]] Digits& digits() { return digits_; }
+
+ private:
+  Digits digits_{};  ///< the last one counts non-finite terms
+};
+
+}  // namespace barchan

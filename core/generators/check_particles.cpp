@@ -1,0 +1,115 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <barchan/core/error.hpp>
+#include <barchan/core/generators/close_pairs.hpp>
+#include <barchan/core/generators/make_particles.hpp>
+
+namespace barchan {
+namespace {
+
+std::string at(const ParticleData& p) {
+  return fmt::format("particle {} at ({:.6g}, {:.6g}, {:.6g})", p.id, p.position.x(),
+                     p.position.y(), p.position.z());
+}
+
+void check_each(const Model& model, const ParticleData& p) {
+  const auto refuse = [&](const std::string& what, const char* remedy) {
+    throw InputError(at(p) + " " + what, remedy);
+  };
+  if (p.id < 1) refuse("has no valid id", "ids count from 1");
+  if (!(p.position.allFinite() && p.velocity.allFinite() && p.omega.allFinite())) {
+    refuse("has a position or velocity that is not finite", "give finite numbers");
+  }
+  if (!(p.radius > 0.0 && std::isfinite(p.radius)))
+    refuse(fmt::format("has radius {:g}", p.radius), "a radius is above zero [m]");
+  if (!(p.density > 0.0 && std::isfinite(p.density)))
+    refuse(fmt::format("has density {:g}", p.density), "a density is above zero");
+  if (p.type < 0 || p.type >= static_cast<std::int32_t>(model.materials.size())) {
+    refuse(fmt::format("is of type {}", p.type + 1), "every type needs a material in the deck");
+  }
+  if (!is_inside(model.domain, p.position, model.dimension)) {
+    refuse("is outside the domain", "enlarge the domain or leave the particle out");
+  }
+}
+
+std::vector<std::int64_t> sorted_ids(const ParticleSet& set) {
+  std::vector<std::int64_t> ids;
+  ids.reserve(set.particles.size());
+  for (const ParticleData& p : set.particles) ids.push_back(p.id);
+  std::sort(ids.begin(), ids.end());
+  const auto twin = std::adjacent_find(ids.begin(), ids.end());
+  if (twin != ids.end())
+    throw InputError(fmt::format("particle id {} appears twice", *twin),
+                     "every id may appear once");
+  return ids;
+}
+
+bool is_less(const BondData& a, const BondData& b) {
+  return a.id_a != b.id_a ? a.id_a < b.id_a : a.id_b < b.id_b;
+}
+
+std::vector<BondData> checked_bonds(const Model& model, const ParticleSet& set,
+                                    std::span<const std::int64_t> ids) {
+  std::vector<BondData> bonds = set.bonds;
+  for (const BondData& bond : bonds) {
+    const auto refuse = [&](const char* what, const char* remedy) {
+      throw InputError(
+          fmt::format("the bond between particles {} and {} {}", bond.id_a, bond.id_b, what),
+          remedy);
+    };
+    if (bond.id_a >= bond.id_b)
+      refuse("is not in order", "the lower id comes first, and the two differ");
+    const bool are_known = std::binary_search(ids.begin(), ids.end(), bond.id_a) &&
+                           std::binary_search(ids.begin(), ids.end(), bond.id_b);
+    if (!are_known) refuse("refers to an unknown particle", "both must exist");
+    if (bond.law < 0 || bond.law >= static_cast<std::int32_t>(model.bond_laws.size())) {
+      refuse("is of an unknown law", "name a bond of the deck");
+    }
+  }
+  std::sort(bonds.begin(), bonds.end(), is_less);
+  const auto twin = std::adjacent_find(
+      bonds.begin(), bonds.end(),
+      [](const BondData& a, const BondData& b) { return a.id_a == b.id_a && a.id_b == b.id_b; });
+  if (twin != bonds.end()) {
+    throw InputError(fmt::format("particles {} and {} are bonded twice", twin->id_a, twin->id_b),
+                     "one bond a pair");
+  }
+  return bonds;
+}
+
+void check_overlaps(const Model& model, const ParticleSet& set, std::span<const BondData> bonds) {
+  const std::vector<ParticleData>& particles = set.particles;
+  std::vector<Grain> grains;
+  grains.reserve(particles.size());
+  for (const ParticleData& p : particles) grains.push_back({p.position, p.radius});
+  const PairSpace space{model.dimension, model.domain.lo, model.domain.hi, model.domain.periodic};
+  for_each_close_pair(space, grains, 0.0, [&](std::uint32_t i, std::uint32_t j) {
+    const ParticleData& a = particles[i];
+    const ParticleData& b = particles[j];
+    const double overlap = a.radius + b.radius - space.difference(a.position, b.position).norm();
+    const double smaller = std::min(a.radius, b.radius);
+    if (overlap <= kGrossOverlap * smaller || (a.fixed && b.fixed)) return true;
+    const BondData bond{std::min(a.id, b.id), std::max(a.id, b.id), 0};
+    if (std::binary_search(bonds.begin(), bonds.end(), bond, is_less)) return true;
+    throw InputError(fmt::format("{} overlaps {} by {:.0f} % of the smaller radius", at(a), at(b),
+                                 100.0 * overlap / smaller),
+                     fmt::format("at most {:.0f} %: do the regions of two sources overlap?",
+                                 100.0 * kGrossOverlap));
+  });
+}
+
+}  // namespace
+
+void check_particles(const Model& model, const ParticleSet& set) {
+  if (set.particles.empty())
+    throw InputError("there are no particles", "give at least one [[particles]] table");
+  for (const ParticleData& particle : set.particles) check_each(model, particle);
+  const std::vector<std::int64_t> ids = sorted_ids(set);
+  const std::vector<BondData> bonds = checked_bonds(model, set, ids);
+  check_overlaps(model, set, bonds);
+}
+
+}  // namespace barchan

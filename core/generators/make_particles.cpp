@@ -1,0 +1,222 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <type_traits>
+#include <unordered_set>
+
+#include <fmt/format.h>
+
+#include <barchan/core/error.hpp>
+#include <barchan/core/generators/close_pairs.hpp>
+#include <barchan/core/generators/lattice.hpp>
+#include <barchan/core/generators/make_particles.hpp>
+#include <barchan/core/generators/packing.hpp>
+#include <barchan/core/io/particle_file.hpp>
+
+namespace barchan {
+namespace {
+
+constexpr double kTouchGap = 1e-6;  ///< over the sum of the radii
+
+std::vector<Grain> make_ring(const RingSource& ring) {
+  std::vector<Grain> grains;
+  for (std::int64_t k = 0; k < ring.count; ++k) {
+    const double angle = ring.start_angle + 2.0 * std::numbers::pi * static_cast<double>(k) /
+                                                static_cast<double>(ring.count);
+    grains.push_back({ring.center + ring.radius * Vec3(std::cos(angle), std::sin(angle), 0.0),
+                      ring.disk_radius});
+  }
+  return grains;
+}
+
+bool box_contains(const Box& box, const Vec3& position, int dimension) {
+  for (int axis = 0; axis < dimension; ++axis) {
+    if (position[axis] < box.lo[axis] || position[axis] > box.hi[axis]) return false;
+  }
+  return true;
+}
+
+/// Brings a centre that lies within one length of a periodic axis into [lo, hi).
+void wrap(Vec3& position, const Domain& domain, int dimension) {
+  for (int axis = 0; axis < dimension; ++axis) {
+    if (!domain.periodic[static_cast<std::size_t>(axis)]) continue;
+    double& x = position[axis];
+    const double lo = domain.lo[axis];
+    const double hi = domain.hi[axis];
+    if (x < lo && x >= lo - (hi - lo)) x += hi - lo;
+    if (x >= hi && x < hi + (hi - lo)) x = std::max(lo, x - (hi - lo));
+  }
+}
+
+/// Appends source after source; holds the set under construction.
+class Maker {
+ public:
+  explicit Maker(const Model& model) : model_(model) {}
+
+  void add(const ParticleSource& source) {
+    const std::size_t first = set_.particles.size();
+    std::visit([&](const auto& kind) { add_kind(source, kind); }, source.kind);
+    for (std::size_t i = first; i < set_.particles.size(); ++i)
+      finish_particle(set_.particles[i], source);
+    if (!source.bond) return;
+    if (std::holds_alternative<RingSource>(source.kind)) {
+      bond_ring(first, *source.bond);
+    } else {
+      bond_touching(first, *source.bond);
+    }
+  }
+
+  [[nodiscard]] ParticleSet take() { return std::move(set_); }
+
+ private:
+  void add_kind(const ParticleSource& source, const LatticeSource& kind) {
+    add_grains(source, make_lattice(kind, model_.dimension, source.place));
+  }
+  void add_kind(const ParticleSource& source, const PackingSource& kind) {
+    add_grains(source, make_packing(model_, kind, source.place));
+  }
+  void add_kind(const ParticleSource& source, const RingSource& kind) {
+    add_grains(source, make_ring(kind));
+  }
+
+  void add_kind(const ParticleSource&, const ListSource& kind) {
+    for (ParticleData particle : kind.particles) {
+      particle.id = ++last_id_;
+      set_.particles.push_back(particle);
+    }
+  }
+
+  void add_kind(const ParticleSource& source, const FileSource& kind) {
+    ParticleFile file = kind.format == FileSource::Format::Csv ? read_particles_csv(kind.path)
+                                                               : read_particles_lammps(kind.path);
+    if (model_.dimension == 2) convert_to_areal_density(file);
+    check_ids(file);
+    for (std::size_t i = 0; i < file.particles.size(); ++i) add_row(source, file, i);
+    for (const ParticleData& particle : file.particles) last_id_ = std::max(last_id_, particle.id);
+  }
+
+  void check_ids(const ParticleFile& file) const {
+    constexpr std::int64_t kHighest = std::int64_t{1} << 62;
+    std::unordered_set<std::int64_t> taken;
+    for (const ParticleData& particle : set_.particles) taken.insert(particle.id);
+    for (std::size_t i = 0; i < file.particles.size(); ++i) {
+      const std::int64_t id = file.particles[i].id;
+      if (id < kHighest && !taken.contains(id)) continue;
+      throw InputError(
+          SourcePlace{file.file, file.lines[i], 0},
+          fmt::format("particle id {} is already taken", id),
+          fmt::format("ids of this file must differ from those before it, that is be above {}",
+                      last_id_));
+    }
+  }
+
+  void add_row(const ParticleSource& source, const ParticleFile& file, std::size_t row) {
+    ParticleData particle = file.particles[row];
+    const auto refuse = [&](const std::string& what, const std::string& remedy) {
+      throw InputError(SourcePlace{file.file, file.lines[row], 0},
+                       fmt::format("particle {} {}", particle.id, what), remedy);
+    };
+    if (source.material) particle.type = *source.material;
+    if (source.density) particle.density = *source.density;
+    if (particle.type >= static_cast<std::int32_t>(model_.materials.size())) {
+      refuse(fmt::format("is of type {}", particle.type + 1),
+             fmt::format("the deck has {} materials", model_.materials.size()));
+    }
+    const bool is_flat = particle.position.z() == 0.0 && particle.velocity.z() == 0.0 &&
+                         particle.omega.x() == 0.0 && particle.omega.y() == 0.0;
+    if (model_.dimension == 2 && !is_flat)
+      refuse("leaves the plane", "in 2D z, vz, omegax and omegay are zero");
+    wrap(particle.position, model_.domain, model_.dimension);
+    if (!is_inside(model_.domain, particle.position, model_.dimension)) {
+      refuse(fmt::format("at ({:.6g}, {:.6g}, {:.6g}) is outside the domain", particle.position.x(),
+                         particle.position.y(), particle.position.z()),
+             "enlarge the domain or leave the particle out");
+    }
+    particle.velocity += source.velocity;
+    particle.omega += source.omega;
+    set_.particles.push_back(particle);
+  }
+
+  void add_grains(const ParticleSource& source, const std::vector<Grain>& grains) {
+    const int material = source.material.value_or(0);
+    const double density =
+        source.density.value_or(model_.materials.at(static_cast<std::size_t>(material)).density);
+    for (const Grain& grain : grains) {
+      ParticleData particle;
+      particle.id = ++last_id_;
+      particle.type = material;
+      particle.radius = grain.radius;
+      particle.density = density;
+      particle.position = grain.position;
+      particle.velocity = source.velocity;
+      particle.omega = source.omega;
+      set_.particles.push_back(particle);
+    }
+  }
+
+  void finish_particle(ParticleData& particle, const ParticleSource& source) const {
+    wrap(particle.position, model_.domain, model_.dimension);
+    if (source.fixed && box_contains(*source.fixed, particle.position, model_.dimension))
+      particle.fixed = true;
+    if (is_inside(model_.domain, particle.position, model_.dimension)) return;
+    throw InputError(
+        source.place,
+        fmt::format("particle {} at ({:.6g}, {:.6g}, {:.6g}) is outside the domain", particle.id,
+                    particle.position.x(), particle.position.y(), particle.position.z()),
+        "keep the source within the domain");
+  }
+
+  void add_bond(const ParticleData& a, const ParticleData& b, int law) {
+    set_.bonds.push_back({std::min(a.id, b.id), std::max(a.id, b.id), law});
+  }
+
+  void bond_ring(std::size_t first, int law) {
+    const std::size_t count = set_.particles.size() - first;
+    for (std::size_t k = 0; k < count; ++k) {
+      add_bond(set_.particles[first + k], set_.particles[first + (k + 1) % count], law);
+    }
+  }
+
+  void bond_touching(std::size_t first, int law) {
+    std::vector<Grain> grains;
+    double largest = 0.0;
+    for (std::size_t i = first; i < set_.particles.size(); ++i) {
+      grains.push_back({set_.particles[i].position, set_.particles[i].radius});
+      largest = std::max(largest, set_.particles[i].radius);
+    }
+    const PairSpace space{model_.dimension, model_.domain.lo, model_.domain.hi,
+                          model_.domain.periodic};
+    const std::size_t first_bond = set_.bonds.size();
+    for_each_close_pair(space, grains, 2.0 * kTouchGap * largest,
+                        [&](std::uint32_t i, std::uint32_t j) {
+                          const double reach = grains[i].radius + grains[j].radius;
+                          if (space.difference(grains[i].position, grains[j].position).norm() <=
+                              (1.0 + kTouchGap) * reach) {
+                            add_bond(set_.particles[first + i], set_.particles[first + j], law);
+                          }
+                          return true;
+                        });
+    std::sort(set_.bonds.begin() + static_cast<std::ptrdiff_t>(first_bond), set_.bonds.end(),
+              [](const BondData& a, const BondData& b) {
+                return a.id_a != b.id_a ? a.id_a < b.id_a : a.id_b < b.id_b;
+              });
+  }
+
+  const Model& model_;
+  ParticleSet set_;
+  std::int64_t last_id_ = 0;
+};
+
+}  // namespace
+
+bool is_inside(const Domain& domain, const Vec3& position, int dimension) {
+  return box_contains({domain.lo, domain.hi}, position, dimension);
+}
+
+ParticleSet make_particles(const Model& model, std::span<const ParticleSource> sources) {
+  Maker maker(model);
+  for (const ParticleSource& source : sources) maker.add(source);
+  return maker.take();
+}
+
+}  // namespace barchan

@@ -1,0 +1,47 @@
+#include <barchan/core/grid.hpp>
+
+#include <string>
+
+#include <barchan/core/error.hpp>
+
+namespace barchan {
+
+template <int Dim>
+Grid<Dim>::Grid(const Domain& domain, double cutoff, std::int64_t num_particles) {
+  axis_[0] = domain.strip_axis;
+  for (int a = 0, k = 1; a < Dim; ++a) {
+    if (a != domain.strip_axis) axis_[static_cast<std::size_t>(k++)] = a;
+  }
+  double total = 1.0;
+  for (int k = 0; k < Dim; ++k) {
+    const int a = axis(k);
+    const double length = domain.hi[a] - domain.lo[a];
+    origin_[a] = lo_[static_cast<std::size_t>(k)] = domain.lo[a];
+    periodic_[static_cast<std::size_t>(k)] = domain.periodic[static_cast<std::size_t>(a)];
+    cells_[static_cast<std::size_t>(k)] = static_cast<int>(std::clamp(std::floor(length / cutoff), 1.0, 1e6));
+    total *= cells(k);
+    if (!is_periodic(k)) continue;
+    if (length < 2.0 * cutoff) {
+      throw InputError("the periodic domain is " + std::to_string(length) + " m long, shorter than twice the reach of a contact",
+                       "make it at least " + std::to_string(2.0 * cutoff) + " m");
+    }
+    box_.length[a] = length;
+    box_.inverse[a] = 1.0 / length;
+  }
+  const double most = 8.0 * static_cast<double>(num_particles) + 4096.0;
+  while (total > most) {  // an almost empty domain: larger cells
+    auto widest = std::max_element(cells_.begin(), cells_.end());
+    total /= *widest;
+    *widest = (*widest + 1) / 2;
+    total *= *widest;
+  }
+  for (int k = 0; k < Dim; ++k) {
+    inverse_[static_cast<std::size_t>(k)] = cells(k) / (domain.hi[axis(k)] - domain.lo[axis(k)]);
+    if (k > 0) slab_size_ *= cells(k);
+  }
+}
+
+template class Grid<2>;
+template class Grid<3>;
+
+}  // namespace barchan

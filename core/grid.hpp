@@ -1,0 +1,67 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include <barchan/core/kernels/pair_job.hpp>
+#include <barchan/core/model.hpp>
+
+namespace barchan {
+
+/// The one global grid of a run: it orders the particles, and cuts between strips lie on its faces.
+///
+/// Cells are at least `cutoff` wide, so a particle's partners are in its own cell or in a neighbouring one.
+/// A cell's key grows fastest along the last axis and slowest along the strip axis; a slab is the layer of cells
+/// with one strip coordinate. Particles ordered by (key, id) are in canonical order.
+template <int Dim>
+class Grid {
+ public:
+  Grid() = default;
+
+  /// @param cutoff         reach of the candidate search [m]
+  /// @param num_particles  in all; bounds the number of cells, so that an open domain costs no memory
+  Grid(const Domain& domain, double cutoff, std::int64_t num_particles);
+
+  [[nodiscard]] int num_slabs() const { return cells_[0]; }
+  [[nodiscard]] std::int64_t slab_size() const { return slab_size_; }  ///< cells per slab
+  [[nodiscard]] int axis(int k) const { return axis_[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] int cells(int k) const { return cells_[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] bool is_periodic(int k) const { return periodic_[static_cast<std::size_t>(k)]; }
+  [[nodiscard]] const PeriodicBox& box() const { return box_; }
+
+  /// Grid coordinate along the k-th axis in sorting order (0 = strip axis); outside the domain: the last cell.
+  [[nodiscard]] int coordinate(const double* x, int k) const {
+    const auto a = static_cast<std::size_t>(k);
+    const double c = (x[axis_[a]] - lo_[a]) * inverse_[a];
+    const int top = cells_[a] - 1;
+    return c >= top ? top : (c > 0.0 ? static_cast<int>(c) : 0);
+  }
+  [[nodiscard]] std::int64_t key(const double* x) const {
+    std::int64_t key = coordinate(x, 0);
+    for (int k = 1; k < Dim; ++k) key = key * cells(k) + coordinate(x, k);
+    return key;
+  }
+  /// Brings a position back into the periodic box.
+  void wrap(double* x) const {
+    for (int a = 0; a < Dim; ++a) {
+      if (box_.inverse[a] == 0.0) continue;
+      x[a] -= box_.length[a] * std::floor((x[a] - origin_[a]) * box_.inverse[a]);
+      if (x[a] >= origin_[a] + box_.length[a]) x[a] = origin_[a];
+    }
+  }
+
+ private:
+  std::array<int, Dim> axis_{}, cells_{};
+  std::array<bool, Dim> periodic_{};
+  std::array<double, Dim> lo_{}, inverse_{};
+  double origin_[3] = {};
+  PeriodicBox box_;
+  std::int64_t slab_size_ = 1;
+};
+
+extern template class Grid<2>;
+extern template class Grid<3>;
+
+}  // namespace barchan

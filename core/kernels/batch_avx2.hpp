@@ -1,0 +1,158 @@
+#pragma once
+
+#include <barchan/core/contact_law.hpp>
+#include <barchan/core/kernels/pair_job.hpp>
+#include <barchan/core/simd/avx2.hpp>
+
+namespace barchan::kernels {
+
+/// Four pairs: aligned loads of half records, differences, 4×4 transposes.
+struct BatchAvx2 {
+  using Simd = simd::Avx2;
+  using Real = Simd::Real;
+
+  struct Tables {
+    const double* rows;
+    LawConstants<Simd> first;  ///< the only law there is
+  };
+
+  template <bool UsesMass>
+  BARCHAN_INLINE LawConstants<Simd> gather_rows(const double* rows, const std::uint8_t* code) {
+    Real r[3][4];
+    for (int q = 0; q < 4; ++q) {
+      for (int h = 0; h < (UsesMass ? 3 : 2); ++h) r[h][q] = Simd::load(rows + LawView::kRow * code[q] + 4 * h);
+    }
+    Simd::transpose(r[0][0], r[0][1], r[0][2], r[0][3]);
+    Simd::transpose(r[1][0], r[1][1], r[1][2], r[1][3]);
+    LawConstants<Simd> c{r[0][0], r[0][1], r[0][2], r[0][3], r[1][0], r[1][1], r[1][2], r[1][3], {}, {}, {}};
+    if constexpr (UsesMass) {
+      Simd::transpose(r[2][0], r[2][1], r[2][2], r[2][3]);
+      c.ct_rate = r[2][0];
+      c.cn_critical = r[2][1];
+      c.ct_critical = r[2][2];
+    }
+    return c;
+  }
+
+  template <bool UsesMass, bool OneLaw>
+  BARCHAN_INLINE Tables tables(const LawView& laws) {
+    Tables t{laws.rows, {}};
+    const std::uint8_t only[4] = {1, 1, 1, 1};
+    if constexpr (OneLaw) t.first = gather_rows<UsesMass>(laws.rows, only);
+    return t;
+  }
+
+  template <bool UsesMass, bool OneLaw>
+  BARCHAN_INLINE LawConstants<Simd> constants(const Tables& t, const std::uint8_t* code) {
+    if constexpr (OneLaw) return t.first;
+    return gather_rows<UsesMass>(t.rows, code);
+  }
+
+  BARCHAN_INLINE const double* at(const double* base, int stride, std::int32_t i) {
+    return base + stride * static_cast<std::size_t>(static_cast<std::uint32_t>(i));
+  }
+
+  /// Half records a·sign + b; sign is ±1, so this rounds once.
+  BARCHAN_INLINE Real combine(Real a, Real sign, Real b) { return a * sign + b; }
+
+  BARCHAN_INLINE void gather(const PairJob& job, std::int64_t k, PairState<Simd, 2>& p) {
+    const Real sign_x = {-1, -1, 1, 1}, sign_v = {-1, -1, 1, 1};
+    Real x[4], v[4];
+    for (int q = 0; q < 4; ++q) {
+      const double *a = at(job.motion, 8, job.i[k + q]), *b = at(job.motion, 8, job.j[k + q]);
+      x[q] = combine(Simd::load(a), sign_x, Simd::load(b));
+      v[q] = combine(Simd::load(a + 4), sign_v, Simd::load(b + 4));
+    }
+    Simd::transpose(x[0], x[1], x[2], x[3]);
+    Simd::transpose(v[0], v[1], v[2], v[3]);
+    p = {x[0], x[1], x[2], v[0], v[1], v[2], v[3]};
+  }
+
+  BARCHAN_INLINE void gather(const PairJob& job, std::int64_t k, PairState<Simd, 3>& p) {
+    const Real sign = {-1, -1, -1, 1};
+    Real x[4], v[4], u[4];
+    for (int q = 0; q < 4; ++q) {
+      const double *a = at(job.motion, 8, job.i[k + q]), *b = at(job.motion, 8, job.j[k + q]);
+      x[q] = combine(Simd::load(a), sign, Simd::load(b));
+      v[q] = combine(Simd::load(a + 4), sign, Simd::load(b + 4));
+      u[q] = Simd::load(at(job.spin, 4, job.i[k + q])) + Simd::load(at(job.spin, 4, job.j[k + q]));
+    }
+    Simd::transpose(x[0], x[1], x[2], x[3]);
+    Simd::transpose(v[0], v[1], v[2], v[3]);
+    Simd::transpose(u[0], u[1], u[2], u[3]);
+    p = {x[0], x[1], x[2], x[3], v[0], v[1], v[2], v[3], u[0], u[1], u[2]};
+  }
+
+  template <bool UsesMass, int Dim>
+  BARCHAN_INLINE void respond_with_spring(const PairJob& job, std::int64_t k, const LawConstants<Simd>& c,
+                                          const PairState<Simd, Dim>& p, Real dt, PairForce<Simd, Dim>& f) {
+    if constexpr (Dim == 2) {
+      Real s = Simd::load(job.spring + k);
+      respond<Simd, UsesMass>(c, p, dt, s, f);
+      Simd::store(job.spring + k, s);
+    } else {
+      double* h = job.spring + 24 * (k / 8) + k % 8;
+      Real s[3] = {Simd::load(h), Simd::load(h + 8), Simd::load(h + 16)};
+      respond<Simd, UsesMass>(c, p, dt, s, f);
+      for (int e = 0; e < 3; ++e) Simd::store(h + 8 * e, s[e]);
+    }
+  }
+
+  BARCHAN_INLINE void records(const PairForce<Simd, 2>& f, Real (&r)[4]) {
+    r[0] = f.fx;
+    r[1] = f.fy;
+    r[2] = f.ft;
+    r[3] = Simd::set(0.0);
+    Simd::transpose(r[0], r[1], r[2], r[3]);
+  }
+
+  BARCHAN_INLINE void records(const PairForce<Simd, 3>& f, Real (&r)[8]) {
+    const Real zero = Simd::set(0.0);
+    r[0] = f.fx, r[1] = f.fy, r[2] = f.fz, r[3] = zero;
+    r[4] = f.tx, r[5] = f.ty, r[6] = f.tz, r[7] = zero;
+    Simd::transpose(r[0], r[1], r[2], r[3]);
+    Simd::transpose(r[4], r[5], r[6], r[7]);
+  }
+
+  BARCHAN_INLINE void keep(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f) {
+    Real r[4];
+    records(f, r);
+    for (int q = 0; q < 4; ++q) Simd::store(job.result + 4 * (k + q), r[q]);
+  }
+
+  BARCHAN_INLINE void keep(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f) {
+    Real r[8];
+    records(f, r);
+    for (int q = 0; q < 4; ++q) {
+      Simd::store(job.result + 8 * (k + q), r[q]);
+      Simd::store(job.result + 8 * (k + q) + 4, r[4 + q]);
+    }
+  }
+
+  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f) {
+    const Real sign = {-1, -1, 1, 1};
+    Real r[4];
+    records(f, r);
+    for (int q = 0; q < 4; ++q) {
+      double* a = job.force + 4 * static_cast<std::size_t>(static_cast<std::uint32_t>(job.row_i[k + q]));
+      Simd::store(a, Simd::load(a) + r[q]);
+      double* b = job.force + 4 * static_cast<std::size_t>(static_cast<std::uint32_t>(job.row_j[k + q]));
+      Simd::store(b, Simd::load(b) + r[q] * sign);
+    }
+  }
+
+  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f) {
+    Real r[8];
+    records(f, r);
+    for (int q = 0; q < 4; ++q) {
+      double* a = job.force + 8 * static_cast<std::size_t>(static_cast<std::uint32_t>(job.row_i[k + q]));
+      Simd::store(a, Simd::load(a) + r[q]);
+      Simd::store(a + 4, Simd::load(a + 4) + r[4 + q]);
+      double* b = job.force + 8 * static_cast<std::size_t>(static_cast<std::uint32_t>(job.row_j[k + q]));
+      Simd::store(b, Simd::load(b) - r[q]);
+      Simd::store(b + 4, Simd::load(b + 4) + r[4 + q]);
+    }
+  }
+};
+
+}  // namespace barchan::kernels

@@ -1,0 +1,188 @@
+#pragma once
+
+#include <barchan/core/contact_law.hpp>
+#include <barchan/core/kernels/pair_job.hpp>
+#include <barchan/core/simd/avx512.hpp>
+
+namespace barchan::kernels {
+
+/// Eight pairs: one aligned load a record, differences, an 8×8 transpose, and back.
+struct BatchAvx512 {
+  using Simd = simd::Avx512;
+  using Real = Simd::Real;
+
+  struct Tables {
+    const double* rows;
+    int size;
+    LawConstants<Simd> column;  ///< lane c is law c; with one law, every lane is that law
+  };
+
+  BARCHAN_INLINE __m512d column(const LawView& laws, int field, bool one) {
+    return one ? _mm512_set1_pd(laws.rows[LawView::kRow + field])
+               : _mm512_load_pd(laws.columns + LawView::kColumn * field);
+  }
+
+  template <bool UsesMass, bool OneLaw>
+  BARCHAN_INLINE Tables tables(const LawView& laws) {
+    const auto at = [&laws](int field) __attribute__((always_inline)) { return Real(column(laws, field, OneLaw)); };
+    return {laws.rows, laws.size,
+            {at(LawView::Kn), at(LawView::Kt), at(LawView::InverseKt), at(LawView::Mu), at(LawView::Cap),
+             at(LawView::Cn), at(LawView::Ct), at(LawView::CnRate), at(LawView::CtRate),
+             at(LawView::CnCritical), at(LawView::CtCritical)}};
+  }
+
+  template <bool UsesMass, bool OneLaw>
+  BARCHAN_INLINE LawConstants<Simd> constants(const Tables& t, const std::uint8_t* code) {
+    if constexpr (OneLaw) return t.column;
+    const __m512i lane = _mm512_cvtepu8_epi64(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(code)));
+    if (t.size <= LawView::kColumn) {
+      const auto look = [lane](Real c) __attribute__((always_inline)) {
+        return Real(_mm512_permutexvar_pd(lane, __m512d(c)));
+      };
+      const auto& c = t.column;
+      LawConstants<Simd> out{look(c.kn), look(c.kt), look(c.inverse_kt), look(c.mu), c.cap, look(c.cn), look(c.ct),
+                             {}, {}, {}, {}};
+      if constexpr (UsesMass) {
+        out.cn_rate = look(c.cn_rate), out.ct_rate = look(c.ct_rate);
+        out.cn_critical = look(c.cn_critical), out.ct_critical = look(c.ct_critical);
+      }
+      return out;
+    }
+    const __m512i row = _mm512_slli_epi64(lane, 4);
+    const auto look = [&t, row](int field) __attribute__((always_inline)) {
+      return Real(_mm512_i64gather_pd(row, t.rows + field, 8));
+    };
+    return {look(LawView::Kn), look(LawView::Kt), look(LawView::InverseKt), look(LawView::Mu),
+            look(LawView::Cap), look(LawView::Cn), look(LawView::Ct), look(LawView::CnRate),
+            look(LawView::CtRate), look(LawView::CnCritical), look(LawView::CtCritical)};
+  }
+
+  BARCHAN_INLINE std::size_t wide(std::int32_t i) { return static_cast<std::uint32_t>(i); }
+
+  /// The columns of eight rows of eight.
+  BARCHAN_INLINE void transpose(const __m512d (&a)[8], Real (&o)[8]) {
+    const __m512d l0 = _mm512_unpacklo_pd(a[0], a[1]), l1 = _mm512_unpacklo_pd(a[2], a[3]);
+    const __m512d l2 = _mm512_unpacklo_pd(a[4], a[5]), l3 = _mm512_unpacklo_pd(a[6], a[7]);
+    const __m512d h0 = _mm512_unpackhi_pd(a[0], a[1]), h1 = _mm512_unpackhi_pd(a[2], a[3]);
+    const __m512d h2 = _mm512_unpackhi_pd(a[4], a[5]), h3 = _mm512_unpackhi_pd(a[6], a[7]);
+    const __m512d m0 = _mm512_shuffle_f64x2(l0, l1, 0x88), m1 = _mm512_shuffle_f64x2(l2, l3, 0x88);
+    const __m512d n0 = _mm512_shuffle_f64x2(l0, l1, 0xdd), n1 = _mm512_shuffle_f64x2(l2, l3, 0xdd);
+    const __m512d p0 = _mm512_shuffle_f64x2(h0, h1, 0x88), p1 = _mm512_shuffle_f64x2(h2, h3, 0x88);
+    const __m512d q0 = _mm512_shuffle_f64x2(h0, h1, 0xdd), q1 = _mm512_shuffle_f64x2(h2, h3, 0xdd);
+    o[0] = Real(_mm512_shuffle_f64x2(m0, m1, 0x88)), o[4] = Real(_mm512_shuffle_f64x2(m0, m1, 0xdd));
+    o[2] = Real(_mm512_shuffle_f64x2(n0, n1, 0x88)), o[6] = Real(_mm512_shuffle_f64x2(n0, n1, 0xdd));
+    o[1] = Real(_mm512_shuffle_f64x2(p0, p1, 0x88)), o[5] = Real(_mm512_shuffle_f64x2(p0, p1, 0xdd));
+    o[3] = Real(_mm512_shuffle_f64x2(q0, q1, 0x88)), o[7] = Real(_mm512_shuffle_f64x2(q0, q1, 0xdd));
+  }
+
+  /// Records a·sign + b of eight pairs; sign is ±1, so the fused operation rounds once, like a difference.
+  BARCHAN_INLINE void differences(const PairJob& job, std::int64_t k, __m512d sign, Real (&column)[8]) {
+    __m512d row[8];
+    for (int q = 0; q < 8; ++q) {
+      row[q] = _mm512_fmadd_pd(_mm512_load_pd(job.motion + 8 * wide(job.i[k + q])), sign,
+                               _mm512_load_pd(job.motion + 8 * wide(job.j[k + q])));
+    }
+    transpose(row, column);
+  }
+
+  BARCHAN_INLINE void gather(const PairJob& job, std::int64_t k, PairState<Simd, 2>& p) {
+    Real c[8];
+    differences(job, k, _mm512_setr_pd(-1, -1, 1, 1, -1, -1, 1, 1), c);
+    p = {c[0], c[1], c[2], c[4], c[5], c[6], c[7]};
+  }
+
+  BARCHAN_INLINE void gather(const PairJob& job, std::int64_t k, PairState<Simd, 3>& p) {
+    Real c[8];
+    differences(job, k, _mm512_setr_pd(-1, -1, -1, 1, -1, -1, -1, 1), c);
+    __m256d s[8];
+    for (int q = 0; q < 8; ++q) {
+      s[q] = _mm256_add_pd(_mm256_load_pd(job.spin + 4 * wide(job.i[k + q])),
+                           _mm256_load_pd(job.spin + 4 * wide(job.j[k + q])));
+    }
+    __m512d w[4];
+    for (int q = 0; q < 4; ++q) w[q] = _mm512_insertf64x4(_mm512_castpd256_pd512(s[q]), s[q + 4], 1);
+    const __m512d l0 = _mm512_unpacklo_pd(w[0], w[1]), l1 = _mm512_unpacklo_pd(w[2], w[3]);
+    const __m512d h0 = _mm512_unpackhi_pd(w[0], w[1]), h1 = _mm512_unpackhi_pd(w[2], w[3]);
+    const __m512i low = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
+    const __m512i high = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+    p = {c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], Real(_mm512_permutex2var_pd(l0, low, l1)),
+         Real(_mm512_permutex2var_pd(h0, low, h1)), Real(_mm512_permutex2var_pd(l0, high, l1))};
+  }
+
+  template <bool UsesMass, int Dim>
+  BARCHAN_INLINE void respond_with_spring(const PairJob& job, std::int64_t k, const LawConstants<Simd>& c,
+                                          const PairState<Simd, Dim>& p, Real dt, PairForce<Simd, Dim>& f) {
+    if constexpr (Dim == 2) {
+      Real s = Simd::load(job.spring + k);
+      respond<Simd, UsesMass>(c, p, dt, s, f);
+      Simd::store(job.spring + k, s);
+    } else {
+      double* h = job.spring + 3 * k;
+      Real s[3] = {Simd::load(h), Simd::load(h + 8), Simd::load(h + 16)};
+      respond<Simd, UsesMass>(c, p, dt, s, f);
+      for (int e = 0; e < 3; ++e) Simd::store(h + 8 * e, s[e]);
+    }
+  }
+
+  /// Force records [fx fy ft 0] of eight pairs, pair q in r[q].
+  BARCHAN_INLINE void records(const PairForce<Simd, 2>& f, __m256d (&r)[8]) {
+    const __m512d zero = _mm512_setzero_pd();
+    const __m512d lo = _mm512_unpacklo_pd(__m512d(f.fx), __m512d(f.fy)), tl = _mm512_unpacklo_pd(__m512d(f.ft), zero);
+    const __m512d hi = _mm512_unpackhi_pd(__m512d(f.fx), __m512d(f.fy)), th = _mm512_unpackhi_pd(__m512d(f.ft), zero);
+    const __m512i a = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11), b = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
+    const __m512d o02 = _mm512_permutex2var_pd(lo, a, tl), o13 = _mm512_permutex2var_pd(hi, a, th);
+    const __m512d o46 = _mm512_permutex2var_pd(lo, b, tl), o57 = _mm512_permutex2var_pd(hi, b, th);
+    r[0] = _mm512_castpd512_pd256(o02), r[2] = _mm512_extractf64x4_pd(o02, 1);
+    r[1] = _mm512_castpd512_pd256(o13), r[3] = _mm512_extractf64x4_pd(o13, 1);
+    r[4] = _mm512_castpd512_pd256(o46), r[6] = _mm512_extractf64x4_pd(o46, 1);
+    r[5] = _mm512_castpd512_pd256(o57), r[7] = _mm512_extractf64x4_pd(o57, 1);
+  }
+
+  /// Force records [fx fy fz 0 | tx ty tz 0] of eight pairs.
+  BARCHAN_INLINE void records(const PairForce<Simd, 3>& f, __m512d (&r)[8]) {
+    const Real zero = Simd::set(0.0);
+    const __m512d rows[8] = {__m512d(f.fx), __m512d(f.fy), __m512d(f.fz), __m512d(zero),
+                             __m512d(f.tx), __m512d(f.ty), __m512d(f.tz), __m512d(zero)};
+    Real o[8];
+    transpose(rows, o);
+    for (int q = 0; q < 8; ++q) r[q] = __m512d(o[q]);
+  }
+
+  BARCHAN_INLINE void keep(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f) {
+    __m256d r[8];
+    records(f, r);
+    for (int q = 0; q < 8; ++q) _mm256_store_pd(job.result + 4 * (k + q), r[q]);
+  }
+
+  BARCHAN_INLINE void keep(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f) {
+    __m512d r[8];
+    records(f, r);
+    for (int q = 0; q < 8; ++q) _mm512_store_pd(job.result + 8 * (k + q), r[q]);
+  }
+
+  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f) {
+    const __m256d sign = _mm256_setr_pd(-1, -1, 1, 1);
+    __m256d r[8];
+    records(f, r);
+    for (int q = 0; q < 8; ++q) {
+      double* a = job.force + 4 * wide(job.row_i[k + q]);
+      double* b = job.force + 4 * wide(job.row_j[k + q]);
+      _mm256_store_pd(a, _mm256_add_pd(_mm256_load_pd(a), r[q]));
+      _mm256_store_pd(b, _mm256_fmadd_pd(r[q], sign, _mm256_load_pd(b)));
+    }
+  }
+
+  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f) {
+    const __m512d sign = _mm512_setr_pd(-1, -1, -1, 1, 1, 1, 1, 1);
+    __m512d r[8];
+    records(f, r);
+    for (int q = 0; q < 8; ++q) {
+      double* a = job.force + 8 * wide(job.row_i[k + q]);
+      double* b = job.force + 8 * wide(job.row_j[k + q]);
+      _mm512_store_pd(a, _mm512_add_pd(_mm512_load_pd(a), r[q]));
+      _mm512_store_pd(b, _mm512_fmadd_pd(r[q], sign, _mm512_load_pd(b)));
+    }
+  }
+};
+
+}  // namespace barchan::kernels

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <barchan/core/contact_law.hpp>
+#include <barchan/core/kernels/pair_job.hpp>
+#include <barchan/core/simd/scalar.hpp>
+
+namespace barchan::kernels {
+
+/// Pair by pair: gather, law, scatter; a pair that does not touch touches no memory but its spring.
+struct BatchScalar {
+  using Simd = simd::Scalar;
+
+  template <bool UsesMass, bool OneLaw>
+  static const double* tables(const LawView& laws) {
+    return laws.rows;
+  }
+
+  template <bool UsesMass, bool OneLaw>
+  static LawConstants<Simd> constants(const double* rows, const std::uint8_t* code) {
+    const double* r = rows + LawView::kRow * *code;
+    return {r[LawView::Kn],     r[LawView::Kt],     r[LawView::InverseKt],  r[LawView::Mu],
+            r[LawView::Cap],    r[LawView::Cn],     r[LawView::Ct],         r[LawView::CnRate],
+            r[LawView::CtRate], r[LawView::CnCritical], r[LawView::CtCritical]};
+  }
+
+  static void gather(const PairJob& job, std::int64_t k, PairState<Simd, 2>& p) {
+    const double* a = job.motion + 8 * static_cast<std::int64_t>(job.i[k]);
+    const double* b = job.motion + 8 * static_cast<std::int64_t>(job.j[k]);
+    p = {b[0] - a[0], b[1] - a[1], a[2] + b[2], b[4] - a[4], b[5] - a[5], a[6] + b[6], a[7] + b[7]};
+  }
+
+  static void gather(const PairJob& job, std::int64_t k, PairState<Simd, 3>& p) {
+    const std::int64_t i = job.i[k], j = job.j[k];
+    const double *a = job.motion + 8 * i, *b = job.motion + 8 * j;
+    const double *u = job.spin + 4 * i, *w = job.spin + 4 * j;
+    p = {b[0] - a[0], b[1] - a[1], b[2] - a[2], a[3] + b[3],
+         b[4] - a[4], b[5] - a[5], b[6] - a[6], a[7] + b[7],
+         u[0] + w[0], u[1] + w[1], u[2] + w[2]};
+  }
+
+  template <bool UsesMass, int Dim>
+  [[gnu::always_inline]] static void respond_with_spring(const PairJob& job, std::int64_t k,
+                                                         const LawConstants<Simd>& c, const PairState<Simd, Dim>& p,
+                                                         double dt, PairForce<Simd, Dim>& f) {
+    if constexpr (Dim == 2) {
+      respond<Simd, UsesMass>(c, p, dt, job.spring[k], f);
+    } else {
+      double* s = job.spring + 24 * (k / 8) + k % 8;
+      double t[3] = {s[0], s[8], s[16]};
+      respond<Simd, UsesMass>(c, p, dt, t, f);
+      s[0] = t[0];
+      s[8] = t[1];
+      s[16] = t[2];
+    }
+  }
+
+  static void keep(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f) {
+    double* r = job.result + 4 * k;
+    r[0] = f.fx;
+    r[1] = f.fy;
+    r[2] = f.ft;
+    r[3] = 0.0;
+  }
+
+  static void keep(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f) {
+    const double all[8] = {f.fx, f.fy, f.fz, 0.0, f.tx, f.ty, f.tz, 0.0};
+    for (int c = 0; c < 8; ++c) job.result[8 * k + c] = all[c];
+  }
+
+  static void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f) {
+    double* a = job.force + 4 * static_cast<std::int64_t>(job.row_i[k]);
+    double* b = job.force + 4 * static_cast<std::int64_t>(job.row_j[k]);
+    a[0] += f.fx;
+    a[1] += f.fy;
+    a[2] += f.ft;
+    b[0] -= f.fx;
+    b[1] -= f.fy;
+    b[2] += f.ft;
+  }
+
+  static void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f) {
+    double* a = job.force + 8 * static_cast<std::int64_t>(job.row_i[k]);
+    double* b = job.force + 8 * static_cast<std::int64_t>(job.row_j[k]);
+    const double force[3] = {f.fx, f.fy, f.fz}, torque[3] = {f.tx, f.ty, f.tz};
+    for (int c = 0; c < 3; ++c) {
+      a[c] += force[c];
+      a[4 + c] += torque[c];
+      b[c] -= force[c];
+      b[4 + c] += torque[c];
+    }
+  }
+};
+
+}  // namespace barchan::kernels

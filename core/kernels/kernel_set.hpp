@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <barchan/core/kernels/pair_job.hpp>
+#include <barchan/core/kernels/row_job.hpp>
+#include <barchan/core/law_table.hpp>
+
+namespace barchan {
+
+/// The kernels of a run: one binary, the width chosen when it starts, the same bits at any width.
+struct KernelSet {
+  VectorWidth width = VectorWidth::Scalar;
+  PairKernel pairs = nullptr;       ///< sums into rows
+  PairKernel pairs_kept = nullptr;  ///< the same, and keeps every pair's force
+  RowKernel rows = nullptr;
+  RowKernel rows_damped = nullptr;  ///< with local damping
+};
+
+/// Widths this machine has, narrowest first: scalar, avx2, avx512.
+std::vector<VectorWidth> vector_widths();
+std::string name_of(VectorWidth width);
+/// The widest for "auto". Throws InputError for an unknown width or one the machine lacks, with those it has.
+VectorWidth vector_width(const std::string& name);
+
+/// @param has_bonds  some pairs have the null law, so that laws must be looked up pair by pair
+KernelSet make_kernels(int dim, VectorWidth width, const LawTable& laws, bool has_bonds, const PeriodicBox& box);
+
+}  // namespace barchan

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+
+#include <barchan/core/kernels/law_view.hpp>
+
+namespace barchan {
+
+/// Box lengths for the minimum image; zero inverse where an axis is not periodic.
+struct PeriodicBox {
+  double length[3] = {0, 0, 0};
+  double inverse[3] = {0, 0, 0};
+  [[nodiscard]] bool any() const { return inverse[0] != 0 || inverse[1] != 0 || inverse[2] != 0; }
+};
+
+/// What a pair kernel works on: pairs [begin, end), whole batches, in canonical order.
+struct PairJob {
+  const double* motion = nullptr;   ///< records of all particles and ghosts (layout.hpp)
+  const double* spin = nullptr;     ///< 3D
+  double* force = nullptr;          ///< summed into, in list order
+  const std::int32_t* i = nullptr;  ///< first particle of each pair, lower in canonical order
+  const std::int32_t* j = nullptr;
+  const std::int32_t* row_i = nullptr;  ///< where its force goes: i, or a waste row while i waits for a halo
+  const std::int32_t* row_j = nullptr;
+  const std::uint8_t* code = nullptr;  ///< law of each pair
+  double* spring = nullptr;            ///< per batch: component by component, eight lanes each
+  double* result = nullptr;            ///< if not null: the force of every pair is kept here, a force record each
+  std::int64_t begin = 0, end = 0;
+  double dt = 0.0;
+  PeriodicBox box;
+  LawView laws;
+};
+
+using PairKernel = void (*)(const PairJob&);
+
+enum class VectorWidth { Scalar = 1, Avx2 = 4, Avx512 = 8 };
+
+}  // namespace barchan

@@ -1,0 +1,10 @@
+#include <barchan/core/kernels/batch_avx512.hpp>
+#include <barchan/core/kernels/pair_loop.hpp>
+
+namespace barchan::kernels {
+
+PairKernel pick_avx512(int dim, int flags) {
+  return dim == 2 ? pick<BatchAvx512, 2>(flags) : pick<BatchAvx512, 3>(flags);
+}
+
+}  // namespace barchan::kernels

@@ -1,0 +1,10 @@
+#include <barchan/core/kernels/batch_scalar.hpp>
+#include <barchan/core/kernels/pair_loop.hpp>
+
+namespace barchan::kernels {
+
+PairKernel pick_scalar(int dim, int flags) {
+  return dim == 2 ? pick<BatchScalar, 2>(flags) : pick<BatchScalar, 3>(flags);
+}
+
+}  // namespace barchan::kernels

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+
+namespace barchan {
+
+/// Rows [begin, end) whose forces are complete: kick, drift, forces back to zero.
+///
+///   dv = F·kick/m + g·kick,  dv −= alpha·|dv|·sign(v)   (Cundall's local damping; also on spins)
+///   v += dv,  x += dt·v                                  (leapfrog: v half a step behind x)
+///
+/// `kick` is dt, and dt/2 in the first step of a run, which makes the scheme second order from the start.
+/// Source: Cundall & Strack 1979; local damping: Cundall 1987.
+struct RowJob {
+  double* motion = nullptr;
+  double* spin = nullptr;
+  double* force = nullptr;
+  std::int32_t begin = 0, end = 0;
+  double kick = 0.0, dt = 0.0;
+  double gravity[3] = {};
+  double local_damping = 0.0;
+};
+
+using RowKernel = void (*)(const RowJob&);
+
+}  // namespace barchan

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <barchan/core/kernels/row_job.hpp>
+
+namespace barchan::kernels {
+
+// Q holds half a record: four doubles. A fixed particle has 1/m = 0 and feels no gravity either.
+
+template <class Q, bool Damped>
+[[gnu::always_inline]] inline typename Q::Real kicked(typename Q::Real v, typename Q::Real dv, typename Q::Real alpha) {
+  if constexpr (Damped) dv = dv - alpha * Q::copysign(Q::abs(dv), v);
+  return v + dv;
+}
+
+template <class Q, int Dim, bool Damped>
+void advance_rows(const RowJob& job) {
+  const double k = job.kick;
+  const auto alpha = Q::set(job.local_damping);
+  const auto zero = Q::set(0.0);
+  if constexpr (Dim == 2) {
+    const auto gain = Q::of(k, k, 2.0 * k, 0.0), drift = Q::of(job.dt, job.dt, 0.0, 0.0);
+    const auto gravity = Q::of(job.gravity[0] * k, job.gravity[1] * k, 0.0, 0.0);
+    for (std::int32_t i = job.begin; i < job.end; ++i) {
+      double *x = job.motion + 8 * static_cast<std::int64_t>(i), *f = job.force + 4 * static_cast<std::int64_t>(i);
+      const auto v = Q::load(x + 4), im = Q::last(v);
+      const auto dv = Q::load(f) * (im * gain) + Q::where_positive(im, gravity);
+      const auto w = kicked<Q, Damped>(v, dv, alpha);
+      Q::store(x + 4, w);
+      Q::store(x, Q::load(x) + drift * w);
+      Q::store(f, zero);
+    }
+  } else {
+    const auto gain = Q::of(k, k, k, 0.0), drift = Q::of(job.dt, job.dt, job.dt, 0.0);
+    const auto twist = Q::of(2.5 * k, 2.5 * k, 2.5 * k, 0.0);
+    const auto gravity = Q::of(job.gravity[0] * k, job.gravity[1] * k, job.gravity[2] * k, 0.0);
+    for (std::int32_t i = job.begin; i < job.end; ++i) {
+      double *x = job.motion + 8 * static_cast<std::int64_t>(i), *f = job.force + 8 * static_cast<std::int64_t>(i);
+      double* u = job.spin + 4 * static_cast<std::int64_t>(i);
+      const auto v = Q::load(x + 4), im = Q::last(v);
+      const auto dv = Q::load(f) * (im * gain) + Q::where_positive(im, gravity);
+      const auto w = kicked<Q, Damped>(v, dv, alpha);
+      Q::store(x + 4, w);
+      Q::store(x, Q::load(x) + drift * w);
+      const auto s = Q::load(u);
+      Q::store(u, kicked<Q, Damped>(s, Q::load(f + 4) * (im * twist), alpha));
+      Q::store(f, zero);
+      Q::store(f + 4, zero);
+    }
+  }
+}
+
+template <class Q>
+RowKernel pick_rows(int dim, bool damped) {
+  if (dim == 2) return damped ? &advance_rows<Q, 2, true> : &advance_rows<Q, 2, false>;
+  return damped ? &advance_rows<Q, 3, true> : &advance_rows<Q, 3, false>;
+}
+
+RowKernel pick_rows_scalar(int dim, bool damped);
+RowKernel pick_rows_avx2(int dim, bool damped);
+
+}  // namespace barchan::kernels

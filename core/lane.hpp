@@ -1,0 +1,215 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <barchan/core/bonds.hpp>
+#include <barchan/core/contact_search.hpp>
+#include <barchan/core/grid.hpp>
+#include <barchan/core/kernels/kernel_set.hpp>
+#include <barchan/core/pair_list.hpp>
+#include <barchan/core/particle_store.hpp>
+#include <barchan/core/walls.hpp>
+
+namespace barchan {
+
+/// What all lanes of a run share.
+template <int Dim>
+struct World {
+  Grid<Dim> grid;
+  LawTable laws;
+  KernelSet kernels;
+  std::vector<BondLaw> bond_laws;
+  std::vector<WallSpec> wall_specs;
+  std::vector<WallState> walls;
+  ContactSearchKind search = ContactSearchKind::Cells;
+  double skin = 0.0;  ///< [m]
+  double dt = 0.0;    ///< [s]
+  std::int64_t num_particles = 0;
+};
+
+/// What changes from step to step.
+struct StepFrame {
+  double kick = 0.0;  ///< dt, or dt/2 in the first step
+  double gravity[3] = {};
+  double local_damping = 0.0;
+  bool sum_walls = false;  ///< somebody reads the wall forces of this step
+};
+
+/// One side of a lane: the cut, the owned rows along it, and the pairs across it.
+struct Band {
+  bool exists = false;
+  bool ghosts_first = false;  ///< ghosts precede the owned rows in canonical order
+  bool returns = false;       ///< published scheme: the right-hand side computes the pairs of this cut
+  Rows rows;                  ///< owned rows that are somebody's ghosts
+  CellIndex ghost_cells;
+  PairList across;
+};
+
+/// Sums over a lane, added over lanes and ranks in any order.
+struct Measures {
+  ExactSum kinetic, elastic, gravitational;  ///< [J]
+  ExactSum momentum[3];                      ///< [N·s]
+  std::int64_t contacts = 0;                 ///< touching pairs without a bond, each once
+  std::int64_t bonds = 0, broken_bonds = 0;
+  double max_overlap = 0.0;  ///< [m], with particles or walls
+  double max_speed = 0.0;    ///< [m/s]
+  void add(const Measures& other);
+};
+
+/// How far particles have come since the last rebuild, and how fast they are.
+struct Travel {
+  double distance2 = 0.0;  ///< largest squared displacement [m²]
+  double speed2 = 0.0;     ///< largest squared speed [m²/s²]
+};
+
+/// A lane is to a thread what a strip is to a rank: slabs [slab_begin, slab_end) with their particles, pairs and
+/// bonds, and ghosts of the slabs next to it. All functions are single-threaded and touch this lane only.
+///
+/// The steady step (`E precedes F` means E happens before F):
+///   run_chunk(0) precedes run_chunk(1) precedes … ; all chunks precede finish_band(Right);
+///   run_chunk(0) precedes finish_band(Left);
+///   unpack_halo(side) precedes finish_band(side) precedes pack_halo(side) of the next step.
+///
+/// Rows of a band whose ghosts come first in the canonical order wait for them: their pairs are computed with the
+/// chunks, kept (lists `HeldLow`, `HeldHigh`), and summed by finish_band after the ghosts' share. All other rows are
+/// summed and advanced in place, chunk by chunk.
+template <int Dim>
+class Lane {
+ public:
+  using Store = ParticleStore<Dim>;
+  using L = Layout<Dim>;
+  enum ListName { HeldLow, Owned, HeldHigh, kNumLists };
+  enum Side { Left = 0, Right = 1 };
+
+  explicit Lane(World<Dim>& world) : world_(&world) {}
+
+  // ---- the step (lane_step.cpp)
+  void begin_step(const StepFrame& frame);
+  [[nodiscard]] int num_chunks() const { return static_cast<int>(chunks_.size()) - 1; }
+  void run_chunk(int chunk);
+  void unpack_halo(Side side, std::span<const std::byte> message);
+  void finish_band(Side side);
+  [[nodiscard]] std::size_t halo_bytes(Side side) const;
+  void pack_halo(Side side, std::span<std::byte> message) const;
+  // The published scheme: the owner of the right-hand side computes, the other one takes the results.
+  [[nodiscard]] std::size_t results_bytes(Side side) const;
+  void pack_results(Side side, std::span<std::byte> message) const;
+  void finish_band_from_results(Side side, std::span<const std::byte> message);
+
+  // ---- the rebuild (lane_rebuild.cpp), in this order
+  /// Instead of begin_rebuild at the start of a run: owns these particles and bonds. @pre they lie in the slabs
+  void seed(int slab_begin, int slab_end, std::span<const ParticleData> particles, std::span<const BondData> bonds,
+            std::span<const double> bond_lengths, std::span<const char> is_bonded);
+  /// Takes slabs [slab_begin, slab_end) from now on; writes who leaves, with history and bonds.
+  void begin_rebuild(int slab_begin, int slab_end, std::vector<std::byte>& to_left, std::vector<std::byte>& to_right);
+  void absorb(std::span<const std::byte> message);   ///< arrivals
+  void order();                                      ///< canonical order
+  void pack_ghosts(Side side, std::vector<std::byte>& message) const;
+  void list_owned();
+  void take_ghosts(std::span<const std::byte> left, std::span<const std::byte> right);
+  void restore_history();
+  /// @param chunk_pairs  pairs per chunk of the step; any number gives the same bits
+  void cut_chunks(std::int64_t chunk_pairs);
+
+  // ---- between steps, ghosts up to date (lane_measure.cpp)
+  [[nodiscard]] Measures measure(const Vec3& gravity) const;
+  [[nodiscard]] Travel travel() const;  ///< since the last rebuild; needs no ghosts
+  [[nodiscard]] std::uint64_t digest() const;
+
+  // ---- what others see
+  Store& store() { return store_; }
+  [[nodiscard]] const Store& store() const { return store_; }
+  BondSet<Dim>& bonds() { return bonds_; }
+  [[nodiscard]] const BondSet<Dim>& bonds() const { return bonds_; }
+  WallContacts<Dim>& wall_contacts() { return walls_; }
+  [[nodiscard]] const WallContacts<Dim>& wall_contacts() const { return walls_; }
+  std::vector<WallSums>& wall_sums() { return wall_sums_; }
+  Band& band(Side side) { return bands_[side]; }
+  [[nodiscard]] const Band& band(Side side) const { return bands_[side]; }
+  [[nodiscard]] const PairList& list(ListName name) const { return lists_[name]; }
+  PairList& list(ListName name) { return lists_[name]; }
+  [[nodiscard]] int slab_begin() const { return slab_begin_; }
+  [[nodiscard]] int slab_end() const { return slab_end_; }
+  [[nodiscard]] std::int64_t num_pairs() const;
+  [[nodiscard]] std::size_t bytes() const;
+  World<Dim>& world() { return *world_; }
+  [[nodiscard]] const World<Dim>& world() const { return *world_; }
+
+  /// A contact's spring on its way from old lists to new ones; oriented from the handle to the partner.
+  struct LooseContact {
+    std::int32_t handle = 0;  ///< row: before order() a source row, in messages the migrant's number
+    std::int64_t partner = 0;
+    double spring[L::kSprings] = {};
+  };
+  /// Queues history from outside (a checkpoint); `handle` counts rows as absorbed since begin_rebuild.
+  void queue_history(const LooseContact& contact) { loose_.push_back(contact); }
+
+ private:
+  struct Block {
+    int list = 0;
+    std::int64_t begin = 0, end = 0;
+    std::int32_t final_row = 0;  ///< rows before this one are complete after the block
+    bool has_extras = false;     ///< bonds, walls or external forces among them
+  };
+
+  [[nodiscard]] int direction_of(int slab) const;  ///< 0 here, 1 left, 2 right
+  [[nodiscard]] bool computes_bond(std::int32_t bond) const;
+  [[nodiscard]] std::pair<bool, bool> bond_leaves(std::int32_t bond) const;
+  PairJob job(PairList& list) const;
+  void run_block(const Block& block);
+  void finish_rows(std::int32_t begin, std::int32_t end, bool has_extras);
+  void replay(Rows rows);
+  void compute_bonds(typename BondSet<Dim>::Group group);
+  void unbind(std::int32_t bond);
+  void add_results(const Band& band, const double* result);
+  void research_owned();
+  void research_across(Side side);
+
+  void cut_blocks();
+  void redirect(PairList& list) const;
+  void list_across(Side side);
+  void list_bonded();
+  struct Slot {
+    PairList* list = nullptr;
+    std::int64_t k = -1;
+  };
+  Slot slot(std::int32_t a, std::int32_t b);
+  std::int32_t find_near(std::int32_t row, std::int64_t id) const;
+  void place(std::int32_t a, std::int32_t b, const double* spring_a_to_b);
+  void collect_loose(std::vector<std::vector<LooseContact>>& leaving, const std::vector<std::int8_t>& goes,
+                     const std::vector<std::int32_t>& number);
+  void carry_owned();
+  void gather_rows(const std::vector<std::int32_t>& source);
+
+  World<Dim>* world_;
+  StepFrame frame_;
+  Store store_, spare_;
+  std::array<PairList, kNumLists> lists_, old_lists_;
+  std::array<Band, 2> bands_;
+  std::array<PairList, 2> old_across_;
+  BondSet<Dim> bonds_;
+  BondedPairs bonded_;
+  WallContacts<Dim> walls_;
+  std::vector<WallContact<Dim>> old_walls_;
+  std::vector<WallSums> wall_sums_;
+  CellIndex cells_;
+  std::vector<std::int64_t> row_begin_;
+  std::vector<Block> blocks_;
+  std::vector<int> chunks_{0};  ///< first block of each chunk, and the end
+  std::int32_t rows_done_ = 0;
+  int slab_begin_ = 0, slab_end_ = 0;
+
+  // between begin_rebuild and restore_history
+  std::vector<std::int32_t> new_row_;  ///< of every source row; -1: left
+  std::vector<std::int8_t> goes_;      ///< of every source row: 0 stays, 1 left, 2 right
+  std::vector<LooseContact> loose_;
+};
+
+extern template class Lane<2>;
+extern template class Lane<3>;
+
+}  // namespace barchan

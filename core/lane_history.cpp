@@ -1,0 +1,144 @@
+#include <algorithm>
+
+#include <barchan/core/lane.hpp>
+
+// Contact history on its way through a rebuild. Pairs of rows that both stay are carried by row; all others as
+// loose contacts, by the row of one particle and the id of the other.
+
+namespace barchan {
+
+template <int Dim>
+void Lane<Dim>::collect_loose(std::vector<std::vector<LooseContact>>& leaving, const std::vector<std::int8_t>& goes,
+                              const std::vector<std::int32_t>& number) {
+  lists_.swap(old_lists_);
+  const auto loosen = [&](const PairList& list) {
+    for (std::int64_t k = 0; k < list.size(); ++k) {
+      if (!list.template has_spring<Dim>(k)) continue;
+      const std::int32_t ends[2] = {list.i[static_cast<std::size_t>(k)], list.j[static_cast<std::size_t>(k)]};
+      const auto leaves = [&](std::int32_t row) { return store_.is_owned(row) && goes[static_cast<std::size_t>(row)] != 0; };
+      const bool both_stay = store_.is_owned(ends[0]) && store_.is_owned(ends[1]) && !leaves(ends[0]) && !leaves(ends[1]);
+      if (both_stay) continue;
+      for (int e = 0; e < 2; ++e) {
+        if (!store_.is_owned(ends[e])) continue;
+        const auto own = static_cast<std::size_t>(ends[e]);
+        LooseContact c{ends[e], store_.id[static_cast<std::size_t>(ends[1 - e])], {}};
+        for (int q = 0; q < L::kSprings; ++q) {
+          const double s = list.template springs<Dim>(k)[q * kBatch];
+          c.spring[q] = Dim == 3 && e == 1 ? -s : s;
+        }
+        if (goes[own] == 0) {
+          loose_.push_back(c);
+        } else {
+          c.handle = number[own];
+          leaving[static_cast<std::size_t>(goes[own] - 1)].push_back(c);
+        }
+      }
+    }
+  };
+  for (const PairList& list : old_lists_) loosen(list);
+  for (const Band& band : bands_) {
+    if (band.exists) loosen(band.across);
+  }
+}
+
+template <int Dim>
+typename Lane<Dim>::Slot Lane<Dim>::slot(std::int32_t a, std::int32_t b) {
+  if (store_.is_owned(a) && store_.is_owned(b)) {
+    const std::int32_t low = std::min(a, b), high = std::max(a, b);
+    const std::int64_t begin = row_begin_[static_cast<std::size_t>(low)];
+    for (PairList& list : lists_) {
+      for (std::int64_t k = begin; k < list.size() && list.i[static_cast<std::size_t>(k)] == low; ++k) {
+        if (list.j[static_cast<std::size_t>(k)] == high) return {&list, k};
+      }
+    }
+    return {};
+  }
+  const std::int32_t ghost = store_.is_owned(a) ? b : a, own = store_.is_owned(a) ? a : b;
+  Band& band = bands_[ghost < store_.ghost_begin(Right) ? Left : Right];
+  const std::pair<std::int32_t, std::int32_t> wanted = band.ghosts_first ? std::pair(ghost, own) : std::pair(own, ghost);
+  PairList& list = band.across;
+  std::int64_t low = 0, high = list.size();
+  while (low < high && list.i[static_cast<std::size_t>(high - 1)] == store_.waste()) --high;
+  while (low < high) {
+    const std::int64_t mid = (low + high) / 2;
+    const auto m = static_cast<std::size_t>(mid);
+    if (std::pair(list.i[m], list.j[m]) < wanted) low = mid + 1;
+    else high = mid;
+  }
+  const auto at = static_cast<std::size_t>(low);
+  if (low == list.size() || std::pair(list.i[at], list.j[at]) != wanted) return {};
+  return {&list, low};
+}
+
+template <int Dim>
+std::int32_t Lane<Dim>::find_near(std::int32_t row, std::int64_t id) const {
+  const std::int64_t key = store_.key[static_cast<std::size_t>(row)];
+  Neighbourhood<Dim> around;
+  const auto look = [&](const CellIndex& cells) {
+    around.collect(world_->grid, cells, key, -1, 1, -1);
+    for (int q = 0; q < around.count; ++q) {
+      const Rows rows = around.ranges[static_cast<std::size_t>(q)];
+      for (std::int32_t j = rows.begin; j < rows.end; ++j) {
+        if (store_.id[static_cast<std::size_t>(j)] == id) return j;
+      }
+    }
+    return std::int32_t{-1};
+  };
+  std::int32_t found = look(cells_);
+  for (const Band& band : bands_) {
+    if (found < 0 && band.exists) found = look(band.ghost_cells);
+  }
+  return found;
+}
+
+template <int Dim>
+void Lane<Dim>::place(std::int32_t a, std::int32_t b, const double* spring) {
+  const Slot at = slot(a, b);
+  if (at.list == nullptr) return;  // no longer a candidate, so out of touch
+  if (at.list == &bands_[Right].across && bands_[Right].returns) return;  // kept by the right-hand side
+  const bool swapped = at.list->i[static_cast<std::size_t>(at.k)] != a;
+  for (int c = 0; c < L::kSprings; ++c) at.list->template springs<Dim>(at.k)[c * kBatch] = Dim == 3 && swapped ? -spring[c] : spring[c];
+}
+
+template <int Dim>
+void Lane<Dim>::carry_owned() {
+  double spring[L::kSprings];
+  for (const PairList& list : old_lists_) {
+    for (std::int64_t k = 0; k < list.size(); ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      if (!list.template has_spring<Dim>(k)) continue;
+      const std::int32_t a = new_row_[static_cast<std::size_t>(list.i[at])], b = new_row_[static_cast<std::size_t>(list.j[at])];
+      if (a < 0 || b < 0) continue;
+      for (int c = 0; c < L::kSprings; ++c) spring[c] = list.template springs<Dim>(k)[c * kBatch];
+      place(a, b, spring);
+    }
+  }
+}
+
+template <int Dim>
+void Lane<Dim>::restore_history() {
+  carry_owned();
+  for (const LooseContact& c : loose_) {
+    const std::int32_t row = new_row_[static_cast<std::size_t>(c.handle)];
+    const std::int32_t partner = find_near(row, c.partner);
+    if (partner >= 0) place(row, partner, c.spring);
+  }
+  loose_.clear();
+  bonds_.resolve(store_);
+
+  walls_.search(store_, world_->wall_specs, world_->walls, world_->skin);
+  for (WallContact<Dim>& c : old_walls_) c.row = new_row_[static_cast<std::size_t>(c.row)];
+  std::sort(old_walls_.begin(), old_walls_.end(), [](const auto& p, const auto& q) { return std::pair(p.row, p.wall) < std::pair(q.row, q.wall); });
+  auto old = old_walls_.begin();
+  for (WallContact<Dim>& c : walls_.list()) {
+    while (old != old_walls_.end() && std::pair(old->row, old->wall) < std::pair(c.row, c.wall)) ++old;
+    if (old == old_walls_.end()) break;
+    if (old->row == c.row && old->wall == c.wall) std::copy_n(old->spring, int{L::kSprings}, c.spring);
+  }
+  old_walls_.clear();
+}
+
+template class Lane<2>;
+template class Lane<3>;
+
+}  // namespace barchan

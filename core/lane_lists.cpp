@@ -1,0 +1,191 @@
+#include <algorithm>
+
+#include <barchan/core/lane.hpp>
+
+// Candidate lists of a lane, and the blocks in which the step walks over them.
+
+namespace barchan {
+namespace {
+
+constexpr std::int64_t kBlock = 32 * kBatch;  // pairs; small enough that a block's rows stay in the first cache
+
+/// History of an earlier list of the same rows; both lists are sorted by (i, j).
+template <int Dim>
+void carry_same_rows(const PairList& from, PairList& to) {
+  std::int64_t p = 0;
+  for (std::int64_t k = 0; k < to.size(); ++k) {
+    const auto a = static_cast<std::size_t>(k);
+    const auto behind = [&] {
+      const auto b = static_cast<std::size_t>(p);
+      return std::pair(from.i[b], from.j[b]) < std::pair(to.i[a], to.j[a]);
+    };
+    while (p < from.size() && behind()) ++p;
+    if (p == from.size()) return;
+    const auto b = static_cast<std::size_t>(p);
+    if (from.i[b] != to.i[a] || from.j[b] != to.j[a]) continue;
+    for (int c = 0; c < Layout<Dim>::kSprings; ++c) to.template springs<Dim>(k)[c * kBatch] = from.template springs<Dim>(p)[c * kBatch];
+  }
+}
+
+}  // namespace
+
+template <int Dim>
+void Lane<Dim>::list_bonded() {
+  bonded_.clear();
+  for (std::size_t b = 0; b < bonds_.bonds().size(); ++b) {
+    if (!bonds_.is_broken(static_cast<std::int32_t>(b))) bonded_.add(bonds_.bonds()[b].id_a, bonds_.bonds()[b].id_b);
+  }
+  bonded_.finish();
+}
+
+template <int Dim>
+void Lane<Dim>::list_owned() {
+  const std::int32_t n = store_.num_owned;
+  const std::int64_t slab_size = world_->grid.slab_size();
+  bands_[Left].rows = {0, bands_[Left].exists ? cells_.first_row(slab_begin_ + 1, slab_size) : 0};
+  bands_[Right].rows = {bands_[Right].exists ? cells_.first_row(slab_end_ - 1, slab_size) : n, n};
+  const bool held_low = bands_[Left].exists && bands_[Left].ghosts_first;
+  const bool held_high = bands_[Right].exists && bands_[Right].ghosts_first;
+  const std::int32_t low = held_low ? bands_[Left].rows.end : 0;
+  const std::int32_t high = held_high ? std::max(low, cells_.first_row(slab_end_ - 2, slab_size)) : n;
+
+  const ContactSearch<Dim> search(world_->grid, store_, {world_->skin, world_->search, &world_->laws, &bonded_});
+  const Rows parts[kNumLists] = {{0, low}, {low, high}, {high, n}};
+  row_begin_.resize(static_cast<std::size_t>(n) + 1);
+  for (int l = 0; l < kNumLists; ++l) {
+    PairList& list = lists_[static_cast<std::size_t>(l)];
+    list.clear();
+    search.owned(cells_, parts[l], list, row_begin_);
+    list.pad(store_.waste());
+    list.template reset_springs<Dim>();
+    if (l != Owned) redirect(list);
+  }
+  cut_blocks();
+}
+
+template <int Dim>
+void Lane<Dim>::redirect(PairList& list) const {
+  const auto held = [this](std::int32_t i) {
+    return (bands_[Left].ghosts_first && i < bands_[Left].rows.end) ||
+           (bands_[Right].ghosts_first && i >= bands_[Right].rows.begin);
+  };
+  list.result.resize(list.i.size() * L::kForce);
+  for (std::size_t k = 0; k < list.i.size(); ++k) {
+    list.row_i.push_back(held(list.i[k]) ? store_.waste() : list.i[k]);
+    list.row_j.push_back(held(list.j[k]) ? store_.waste() + 1 : list.j[k]);
+  }
+}
+
+template <int Dim>
+void Lane<Dim>::cut_blocks() {
+  blocks_.clear();
+  const std::int32_t first = bands_[Left].rows.end, last = bands_[Right].rows.begin;
+  for (int l = 0; l < kNumLists; ++l) {
+    const PairList& list = lists_[static_cast<std::size_t>(l)];
+    for (std::int64_t k = 0; k < list.size(); k += kBlock) {
+      const std::int64_t end = std::min(k + kBlock, list.size());
+      // Rows before the next pair's first row are complete; the waste row pads, and comes last.
+      const std::int32_t next = end < list.size() ? std::min(list.i[static_cast<std::size_t>(end)], last) : first;
+      blocks_.push_back({l, k, end, next, true});
+    }
+  }
+  // After its last list a row has all it gets here; lists follow one another in row order.
+  std::int32_t done = last;
+  for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) {
+    const PairList& list = lists_[static_cast<std::size_t>(block->list)];
+    if (block->end == list.size()) block->final_row = std::max(first, done);
+    done = std::min(done, std::min(list.i[static_cast<std::size_t>(block->begin)], last));
+  }
+  if (blocks_.empty() || blocks_.back().final_row < last) blocks_.push_back({Owned, 0, 0, last, true});
+  for (Block& block : blocks_) block.final_row = std::clamp(block.final_row, first, last);
+  chunks_ = {0, static_cast<int>(blocks_.size())};
+}
+
+template <int Dim>
+void Lane<Dim>::cut_chunks(std::int64_t chunk_pairs) {
+  const auto touches_left = [this](const Block& block) {
+    const PairList& list = lists_[static_cast<std::size_t>(block.list)];
+    return block.begin < block.end && list.i[static_cast<std::size_t>(block.begin)] < bands_[Left].rows.end;
+  };
+  chunks_ = {0};
+  std::int64_t pairs = 0;
+  for (std::size_t b = 0; b < blocks_.size(); ++b) {
+    // Everything that the left band waits for is in the first chunk.
+    pairs += blocks_[b].end - blocks_[b].begin;
+    const bool is_last = b + 1 == blocks_.size();
+    if (is_last || (pairs >= chunk_pairs && !touches_left(blocks_[b + 1]))) {
+      chunks_.push_back(static_cast<int>(b) + 1);
+      pairs = 0;
+    }
+  }
+  std::int32_t row = bands_[Left].rows.end;
+  for (Block& block : blocks_) {
+    const auto& walls = walls_.list();
+    const auto wall = std::lower_bound(walls.begin(), walls.end(), row, [](const WallContact<Dim>& c, std::int32_t r) { return c.row < r; });
+    block.has_extras = !bonds_.empty() || (wall != walls.end() && wall->row < block.final_row);
+    row = std::max(row, block.final_row);
+  }
+}
+
+template <int Dim>
+void Lane<Dim>::list_across(Side side) {
+  Band& band = bands_[side];
+  if (!band.exists) return;
+  band.across.clear();
+  const std::int64_t slab_size = world_->grid.slab_size();
+  CellIndex own;  // the band's slab alone
+  own.slab_begin = side == Left ? slab_begin_ : slab_end_ - 1;
+  own.slab_end = own.slab_begin + 1;
+  own.first_key = own.slab_begin * slab_size;
+  const auto from = cells_.start.begin() + (own.slab_begin - slab_begin_) * slab_size;
+  own.start.assign(from, from + slab_size + 1);
+  const ContactSearch<Dim> search(world_->grid, store_, {world_->skin, world_->search, &world_->laws, &bonded_});
+  const int towards = side == Left ? -1 : 1;  // from owned to ghost
+  if (band.ghosts_first) search.across(band.ghost_cells, own, -towards, band.across);
+  else search.across(own, band.ghost_cells, towards, band.across);
+  band.across.pad(store_.waste());
+  band.across.template reset_springs<Dim>();
+  band.across.result.resize(band.returns ? band.across.i.size() * L::kForce : 0);
+}
+
+template <int Dim>
+void Lane<Dim>::research_owned() {
+  lists_.swap(old_lists_);
+  list_owned();
+  cut_chunks(std::int64_t{1} << 60);
+  for (int l = 0; l < kNumLists; ++l) {
+    carry_same_rows<Dim>(old_lists_[static_cast<std::size_t>(l)], lists_[static_cast<std::size_t>(l)]);
+  }
+}
+
+template <int Dim>
+void Lane<Dim>::research_across(Side side) {
+  std::swap(bands_[side].across, old_across_[side]);
+  list_across(side);
+  carry_same_rows<Dim>(old_across_[side], bands_[side].across);
+}
+
+template <int Dim>
+std::int64_t Lane<Dim>::num_pairs() const {
+  std::int64_t n = 0;
+  for (const PairList& list : lists_) n += list.size();
+  for (const Band& band : bands_) n += band.exists ? band.across.size() : 0;
+  return n;
+}
+
+template <int Dim>
+std::size_t Lane<Dim>::bytes() const {
+  std::size_t total = store_.bytes() + spare_.bytes() + bonds_.bytes() + 8 * row_begin_.capacity() +
+                      4 * (cells_.start.capacity() + new_row_.capacity()) + blocks_.capacity() * sizeof(Block) +
+                      walls_.list().capacity() * sizeof(WallContact<Dim>);
+  for (const auto* lists : {&lists_, &old_lists_}) {
+    for (const PairList& list : *lists) total += list.bytes();
+  }
+  for (const Band& band : bands_) total += band.across.bytes();
+  return total;
+}
+
+template class Lane<2>;
+template class Lane<3>;
+
+}  // namespace barchan

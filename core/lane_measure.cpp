@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <cmath>
+
+#include <barchan/core/digest.hpp>
+#include <barchan/core/lane.hpp>
+
+namespace barchan {
+
+void Measures::add(const Measures& other) {
+  kinetic.add(other.kinetic);
+  elastic.add(other.elastic);
+  gravitational.add(other.gravitational);
+  for (int c = 0; c < 3; ++c) momentum[c].add(other.momentum[c]);
+  contacts += other.contacts;
+  bonds += other.bonds;
+  broken_bonds += other.broken_bonds;
+  max_overlap = std::max(max_overlap, other.max_overlap);
+  max_speed = std::max(max_speed, other.max_speed);
+}
+
+namespace {
+
+template <int Dim>
+void measure_motion(const ParticleStore<Dim>& store, const Vec3& gravity, Measures& m) {
+  for (std::int32_t i = 0; i < store.num_owned; ++i) {
+    const double im = store.inverse_mass(i);
+    if (im == 0.0) continue;
+    const double mass = 1.0 / im;
+    double v2 = 0.0, u2 = 0.0, height = 0.0;
+    for (int c = 0; c < Dim; ++c) {
+      v2 += store.v(i)[c] * store.v(i)[c];
+      height -= gravity[c] * store.x(i)[c];
+      m.momentum[c].add(mass * store.v(i)[c]);
+    }
+    for (int c = 0; c < kSpins<Dim>; ++c) u2 += store.u(i)[c] * store.u(i)[c];
+    m.kinetic.add(0.5 * mass * (v2 + u2 / Layout<Dim>::kSpinGain));
+    m.gravitational.add(mass * height);
+    m.max_speed = std::max(m.max_speed, std::sqrt(v2));
+  }
+}
+
+template <int Dim>
+void measure_pairs(const Lane<Dim>& lane, const PairList& list, Measures& m) {
+  const auto& store = lane.store();
+  const PeriodicBox& box = lane.world().grid.box();
+  const LawView laws = lane.world().laws.view();
+  for (std::int64_t k = 0; k < list.size(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    if (list.code[at] == LawTable::kBonded) continue;
+    const std::int32_t i = list.i[at], j = list.j[at];
+    double d2 = 0.0;
+    for (int c = 0; c < Dim; ++c) {
+      double d = store.x(j)[c] - store.x(i)[c];
+      d -= box.length[c] * std::rint(d * box.inverse[c]);
+      d2 += d * d;
+    }
+    const double reach = store.radius(i) + store.radius(j);
+    if (d2 >= reach * reach) continue;
+    const double overlap = reach - std::sqrt(d2);
+    const double* law = laws.rows + LawView::kRow * list.code[at];
+    const double* s = list.template springs<Dim>(k);
+    double s2 = 0.0;
+    for (int c = 0; c < Layout<Dim>::kSprings; ++c) s2 += s[c * kBatch] * s[c * kBatch];
+    m.elastic.add(0.5 * (law[LawView::Kn] * overlap * overlap + law[LawView::Kt] * s2));
+    m.max_overlap = std::max(m.max_overlap, overlap);
+    ++m.contacts;
+  }
+}
+
+template <int Dim>
+void measure_walls(const Lane<Dim>& lane, Measures& m) {
+  const auto& store = lane.store();
+  const auto& world = lane.world();
+  for (const WallContact<Dim>& c : lane.wall_contacts().list()) {
+    double to_wall[3] = {};
+    const auto w = static_cast<std::size_t>(c.wall);
+    const double overlap = store.radius(c.row) - WallContacts<Dim>::nearest(world.wall_specs[w], world.walls[w], store.x(c.row), to_wall);
+    if (overlap <= 0.0) continue;
+    const double* law = world.laws.view().rows +
+                        LawView::kRow * world.laws.code(world.wall_specs[w].material, store.type[static_cast<std::size_t>(c.row)]);
+    double s2 = 0.0;
+    for (const double s : c.spring) s2 += s * s;
+    m.elastic.add(0.5 * (law[LawView::Kn] * overlap * overlap + law[LawView::Kt] * s2));
+    m.max_overlap = std::max(m.max_overlap, overlap);
+  }
+}
+
+}  // namespace
+
+template <int Dim>
+Measures Lane<Dim>::measure(const Vec3& gravity) const {
+  Measures m;
+  measure_motion(store_, gravity, m);
+  for (const PairList& list : lists_) measure_pairs(*this, list, m);
+  if (bands_[Left].exists) measure_pairs(*this, bands_[Left].across, m);  // a pair across a cut counts on its right
+  measure_walls(*this, m);
+  for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.bonds().size()); ++b) {
+    // A bond across a cut counts on its right, too.
+    const std::int32_t last = std::max(bonds_.end_a(b), bonds_.end_b(b));
+    if (bonds_.is_broken(b) || last >= store_.ghost_begin(Right)) continue;
+    m.elastic.add(bonds_.energy(b, store_, world_->bond_laws, world_->grid.box()));
+    ++m.bonds;
+  }
+  m.broken_bonds = bonds_.num_broken();
+  return m;
+}
+
+template <int Dim>
+Travel Lane<Dim>::travel() const {
+  Travel t;
+  const PeriodicBox& box = world_->grid.box();
+  for (std::int32_t i = 0; i < store_.num_owned; ++i) {
+    const double *x = store_.x(i), *v = store_.v(i);
+    const double* from = store_.reference.data() + std::size_t{Dim} * static_cast<std::size_t>(i);
+    double d2 = 0.0, v2 = 0.0;
+    for (int c = 0; c < Dim; ++c) {
+      double d = x[c] - from[c];
+      d -= box.length[c] * std::rint(d * box.inverse[c]);
+      d2 += d * d;
+      v2 += v[c] * v[c];
+    }
+    t.distance2 = std::max(t.distance2, d2);
+    t.speed2 = std::max(t.speed2, v2);
+  }
+  return t;
+}
+
+template <int Dim>
+std::uint64_t Lane<Dim>::digest() const {
+  std::uint64_t sum = 0;
+  for (std::int32_t i = 0; i < store_.num_owned; ++i) {
+    double omega[3];
+    for (int c = 0; c < kSpins<Dim>; ++c) omega[c] = store_.u(i)[c] / store_.radius(i);
+    sum += particle_digest(store_.id[static_cast<std::size_t>(i)], {store_.x(i), std::size_t{Dim}}, {store_.v(i), std::size_t{Dim}},
+                           {omega, std::size_t{kSpins<Dim>}});
+  }
+  return sum;
+}
+
+template Measures Lane<2>::measure(const Vec3&) const;
+template Measures Lane<3>::measure(const Vec3&) const;
+template Travel Lane<2>::travel() const;
+template Travel Lane<3>::travel() const;
+template std::uint64_t Lane<2>::digest() const;
+template std::uint64_t Lane<3>::digest() const;
+
+}  // namespace barchan

@@ -1,0 +1,296 @@
+#include <algorithm>
+
+#include <barchan/core/bytes.hpp>
+#include <barchan/core/lane.hpp>
+
+// Ownership and order: who leaves, who arrives, canonical order, ghosts.
+
+namespace barchan {
+namespace {
+
+template <int Dim>
+struct ParticleRecord {
+  std::int64_t id, key;
+  double motion[8];
+  double spin[Dim == 3 ? 4 : 1];
+  double external[Layout<Dim>::kForce];
+  std::uint8_t type, flags, has_external;
+};
+
+template <int Dim>
+struct WallRecord {
+  std::int32_t number, wall;
+  double spring[Layout<Dim>::kSprings];
+};
+
+template <int Dim>
+struct BondRecord {
+  Bond<Dim> bond;
+  std::uint8_t is_current;  ///< the sender computes this bond; its state replaces the receiver's
+};
+
+template <int Dim>
+ParticleRecord<Dim> record_of(const ParticleStore<Dim>& s, std::int32_t row) {
+  ParticleRecord<Dim> r{};
+  const auto at = static_cast<std::size_t>(row);
+  r.id = s.id[at];
+  r.key = s.key[at];
+  std::copy_n(s.x(row), 8, r.motion);
+  if constexpr (Dim == 3) std::copy_n(s.u(row), 4, r.spin);
+  r.type = s.type[at];
+  r.flags = s.flags[at];
+  if (!s.external.empty() && s.is_owned(row)) {
+    r.has_external = 1;
+    std::copy_n(s.external.data() + at * Layout<Dim>::kForce, int{Layout<Dim>::kForce}, r.external);
+  }
+  return r;
+}
+
+template <int Dim>
+void write_row(ParticleStore<Dim>& s, std::int32_t row, const ParticleRecord<Dim>& r) {
+  const auto at = static_cast<std::size_t>(row);
+  s.id[at] = r.id;
+  s.key[at] = r.key;
+  std::copy_n(r.motion, 8, s.x(row));
+  if constexpr (Dim == 3) std::copy_n(r.spin, 4, s.u(row));
+  s.type[at] = r.type;
+  s.flags[at] = r.flags;
+}
+
+}  // namespace
+
+template <int Dim>
+int Lane<Dim>::direction_of(int slab) const {
+  if (slab >= slab_begin_ && slab < slab_end_) return 0;
+  if (!bands_[Left].exists || !bands_[Right].exists) return bands_[Right].exists ? 2 : 1;
+  if (!world_->grid.is_periodic(0)) return slab >= slab_end_ ? 2 : 1;
+  // The shorter way round; the cuts move by less than a strip at a time.
+  const int n = world_->grid.num_slabs();
+  return (slab - slab_end_ + n) % n < (slab_begin_ - 1 - slab + n) % n ? 2 : 1;
+}
+
+template <int Dim>
+bool Lane<Dim>::computes_bond(std::int32_t bond) const {
+  if (!bands_[Right].returns) return true;
+  const std::int32_t first_right_ghost = store_.ghost_begin(Right);
+  return bonds_.end_a(bond) < first_right_ghost && bonds_.end_b(bond) < first_right_ghost;
+}
+
+template <int Dim>
+std::pair<bool, bool> Lane<Dim>::bond_leaves(std::int32_t bond) const {
+  std::pair<bool, bool> leaves{false, false};
+  for (const std::int32_t end : {bonds_.end_a(bond), bonds_.end_b(bond)}) {
+    if (!store_.is_owned(end)) continue;
+    const std::int8_t goes = goes_[static_cast<std::size_t>(end)];
+    leaves.first = leaves.first || goes == 1;
+    leaves.second = leaves.second || goes == 2;
+  }
+  return leaves;
+}
+
+template <int Dim>
+void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byte>& to_left,
+                              std::vector<std::byte>& to_right) {
+  slab_begin_ = slab_begin;
+  slab_end_ = slab_end;
+  const std::int32_t n = store_.num_owned;
+  goes_.assign(static_cast<std::size_t>(n), 0);
+  std::vector<std::int32_t> number(static_cast<std::size_t>(n), 0);
+  std::array<std::vector<ParticleRecord<Dim>>, 2> leavers;
+  for (std::int32_t i = 0; i < n; ++i) {
+    world_->grid.wrap(store_.x(i));
+    const auto at = static_cast<std::size_t>(i);
+    store_.key[at] = world_->grid.key(store_.x(i));
+    goes_[at] = static_cast<std::int8_t>(direction_of(static_cast<int>(store_.key[at] / world_->grid.slab_size())));
+    if (goes_[at] == 0) continue;
+    auto& out = leavers[static_cast<std::size_t>(goes_[at] - 1)];
+    number[at] = static_cast<std::int32_t>(out.size());
+    out.push_back(record_of(store_, i));
+  }
+
+  loose_.clear();
+  std::vector<std::vector<LooseContact>> contacts(2);
+  collect_loose(contacts, goes_, number);
+  std::array<std::vector<WallRecord<Dim>>, 2> walls;
+  old_walls_.clear();
+  for (const WallContact<Dim>& c : walls_.list()) {
+    const auto at = static_cast<std::size_t>(c.row);
+    if (goes_[at] == 0) {
+      old_walls_.push_back(c);
+      continue;
+    }
+    WallRecord<Dim> w{number[at], c.wall, {}};
+    std::copy_n(c.spring, int{L::kSprings}, w.spring);
+    walls[static_cast<std::size_t>(goes_[at] - 1)].push_back(w);
+  }
+  std::array<std::vector<BondRecord<Dim>>, 2> bonds;
+  for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.bonds().size()); ++b) {
+    if (bonds_.is_broken(b)) continue;
+    const auto [left, right] = bond_leaves(b);
+    const BondRecord<Dim> record{bonds_.bonds()[static_cast<std::size_t>(b)], static_cast<std::uint8_t>(computes_bond(b))};
+    if (left) bonds[0].push_back(record);
+    if (right) bonds[1].push_back(record);
+  }
+  bonds_.drop_broken();
+  for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
+    auto& message = side == 0 ? to_left : to_right;
+    message.clear();
+    ByteWriter out(message);
+    out.put_counted(leavers[side]);
+    out.put_counted(contacts[side]);
+    out.put_counted(walls[side]);
+    out.put_counted(bonds[side]);
+  }
+}
+
+template <int Dim>
+void Lane<Dim>::absorb(std::span<const std::byte> message) {
+  if (message.empty()) return;
+  ByteReader in(message);
+  const auto particles = in.take_counted<ParticleRecord<Dim>>();
+  auto contacts = in.take_counted<LooseContact>();
+  const auto walls = in.take_counted<WallRecord<Dim>>();
+  const auto bonds = in.take_counted<BondRecord<Dim>>();
+  in.finish();
+
+  // Arrivals follow the source rows of begin_rebuild; ghosts and waste rows are no longer needed.
+  const auto first = static_cast<std::int32_t>(goes_.size());
+  const std::int32_t end = first + static_cast<std::int32_t>(particles.size());
+  const auto rows = static_cast<std::size_t>(std::max(end + 2, store_.size()));
+  store_.motion.resize(rows * L::kMotion);
+  store_.spin.resize(rows * L::kSpin);
+  store_.id.resize(rows);
+  store_.key.resize(rows);
+  store_.type.resize(rows);
+  store_.flags.resize(rows);
+  goes_.resize(static_cast<std::size_t>(end), 0);
+  for (std::size_t p = 0; p < particles.size(); ++p) {
+    const auto row = first + static_cast<std::int32_t>(p);
+    write_row(store_, row, particles[p]);
+    const int slab = static_cast<int>(particles[p].key / world_->grid.slab_size());
+    if (slab < slab_begin_ || slab >= slab_end_) {
+      throw RunError("particle " + std::to_string(particles[p].id) + " jumped over a whole strip: the time step is too long");
+    }
+    if (particles[p].has_external == 0) continue;
+    store_.external.resize(goes_.size() * L::kForce, 0.0);
+    std::copy_n(particles[p].external, int{L::kForce}, store_.external.data() + static_cast<std::size_t>(row) * L::kForce);
+  }
+  for (LooseContact& c : contacts) {
+    c.handle += first;
+    loose_.push_back(c);
+  }
+  for (const auto& w : walls) {
+    WallContact<Dim> c{first + w.number, w.wall, {}};
+    std::copy_n(w.spring, int{L::kSprings}, c.spring);
+    old_walls_.push_back(c);
+  }
+  for (const auto& b : bonds) bonds_.add(b.bond, b.is_current != 0);
+}
+
+template <int Dim>
+void Lane<Dim>::gather_rows(const std::vector<std::int32_t>& source) {
+  const auto n = static_cast<std::int32_t>(source.size());
+  spare_.num_owned = n;
+  spare_.num_ghosts = {};
+  spare_.motion.resize(static_cast<std::size_t>(n + 2) * L::kMotion);
+  spare_.spin.resize(static_cast<std::size_t>(n + 2) * L::kSpin);
+  for (auto* column : {&spare_.id, &spare_.key}) column->resize(static_cast<std::size_t>(n + 2));
+  for (auto* column : {&spare_.type, &spare_.flags}) column->resize(static_cast<std::size_t>(n + 2));
+  spare_.external.resize(store_.external.empty() ? 0 : static_cast<std::size_t>(n) * L::kForce);
+  store_.external.resize(store_.external.empty() ? 0 : goes_.size() * L::kForce, 0.0);
+  for (std::int32_t i = 0; i < n; ++i) {
+    const std::int32_t from = source[static_cast<std::size_t>(i)];
+    const auto to = static_cast<std::size_t>(i), at = static_cast<std::size_t>(from);
+    std::copy_n(store_.x(from), 8, spare_.x(i));
+    if constexpr (Dim == 3) std::copy_n(store_.u(from), 4, spare_.u(i));
+    spare_.id[to] = store_.id[at];
+    spare_.key[to] = store_.key[at];
+    spare_.type[to] = store_.type[at];
+    spare_.flags[to] = store_.flags[at];
+    if (!store_.external.empty()) {
+      std::copy_n(store_.external.data() + at * L::kForce, int{L::kForce}, spare_.external.data() + to * L::kForce);
+    }
+  }
+  std::swap(store_.motion, spare_.motion);
+  std::swap(store_.spin, spare_.spin);
+  std::swap(store_.id, spare_.id);
+  std::swap(store_.key, spare_.key);
+  std::swap(store_.type, spare_.type);
+  std::swap(store_.flags, spare_.flags);
+  std::swap(store_.external, spare_.external);
+  store_.num_owned = n;
+  store_.num_ghosts = {};
+}
+
+template <int Dim>
+void Lane<Dim>::order() {
+  // Counting sort by cell, then by id within a cell.
+  const std::int64_t first_key = slab_begin_ * world_->grid.slab_size();
+  const auto num_cells = static_cast<std::size_t>((slab_end_ - slab_begin_) * world_->grid.slab_size());
+  std::vector<std::int32_t> start(num_cells + 1, 0);
+  std::int32_t stays = 0;
+  for (std::size_t row = 0; row < goes_.size(); ++row) {
+    if (goes_[row] != 0) continue;
+    ++start[static_cast<std::size_t>(store_.key[row] - first_key) + 1];
+    ++stays;
+  }
+  for (std::size_t c = 0; c < num_cells; ++c) start[c + 1] += start[c];
+  std::vector<std::int32_t> source(static_cast<std::size_t>(stays));
+  std::vector<std::int32_t> next(start.begin(), start.end() - 1);
+  for (std::size_t row = 0; row < goes_.size(); ++row) {
+    if (goes_[row] != 0) continue;
+    const auto cell = static_cast<std::size_t>(store_.key[row] - first_key);
+    std::int32_t at = next[cell]++;
+    for (; at > start[cell] && store_.id[static_cast<std::size_t>(source[static_cast<std::size_t>(at - 1)])] > store_.id[row]; --at) {
+      source[static_cast<std::size_t>(at)] = source[static_cast<std::size_t>(at - 1)];
+    }
+    source[static_cast<std::size_t>(at)] = static_cast<std::int32_t>(row);
+  }
+  new_row_.assign(goes_.size(), -1);
+  for (std::int32_t i = 0; i < stays; ++i) new_row_[static_cast<std::size_t>(source[static_cast<std::size_t>(i)])] = i;
+  gather_rows(source);
+  store_.resize_for_ghosts();
+  cells_.index(world_->grid, store_, {0, stays}, slab_begin_, slab_end_);
+  store_.reference.resize(static_cast<std::size_t>(stays) * Dim);
+  for (std::int32_t i = 0; i < stays; ++i) std::copy_n(store_.x(i), Dim, store_.reference.data() + std::size_t{Dim} * static_cast<std::size_t>(i));
+  list_bonded();
+}
+
+template <int Dim>
+void Lane<Dim>::pack_ghosts(Side side, std::vector<std::byte>& message) const {
+  const std::int64_t slab_size = world_->grid.slab_size();
+  const std::int32_t begin = side == Left ? 0 : cells_.first_row(slab_end_ - 1, slab_size);
+  const std::int32_t end = side == Left ? cells_.first_row(slab_begin_ + 1, slab_size) : store_.num_owned;
+  std::vector<ParticleRecord<Dim>> records;
+  for (std::int32_t i = begin; i < end; ++i) records.push_back(record_of(store_, i));
+  message.clear();
+  ByteWriter(message).put_counted(records);
+}
+
+template <int Dim>
+void Lane<Dim>::take_ghosts(std::span<const std::byte> left, std::span<const std::byte> right) {
+  std::array<std::vector<ParticleRecord<Dim>>, 2> ghosts;
+  for (const Side side : {Left, Right}) {
+    if (!bands_[side].exists) continue;
+    ByteReader in(side == Left ? left : right);
+    ghosts[side] = in.take_counted<ParticleRecord<Dim>>();
+    in.finish();
+    store_.num_ghosts[side] = static_cast<std::int32_t>(ghosts[side].size());
+  }
+  store_.resize_for_ghosts();
+  const int num_slabs = world_->grid.num_slabs();
+  for (const Side side : {Left, Right}) {
+    if (!bands_[side].exists) continue;
+    std::int32_t row = store_.ghost_begin(side);
+    const std::int32_t begin = row;
+    for (const auto& record : ghosts[side]) write_row(store_, row++, record);
+    const int slab = side == Left ? (slab_begin_ - 1 + num_slabs) % num_slabs : slab_end_ % num_slabs;
+    bands_[side].ghost_cells.index(world_->grid, store_, {begin, row}, slab, slab + 1);
+    list_across(side);
+  }
+}
+
+template class Lane<2>;
+template class Lane<3>;
+
+}  // namespace barchan

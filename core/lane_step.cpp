@@ -1,0 +1,165 @@
+#include <algorithm>
+#include <cstring>
+#include <string>
+
+#include <barchan/core/error.hpp>
+#include <barchan/core/lane.hpp>
+
+namespace barchan {
+
+template <int Dim>
+PairJob Lane<Dim>::job(PairList& list) const {
+  PairJob job;
+  auto& store = const_cast<Store&>(store_);
+  job.motion = store.motion.data();
+  job.spin = store.spin.data();
+  job.force = store.force.data();
+  job.i = list.i.data();
+  job.j = list.j.data();
+  job.row_i = list.row_i.empty() ? list.i.data() : list.row_i.data();
+  job.row_j = list.row_j.empty() ? list.j.data() : list.row_j.data();
+  job.code = list.code.data();
+  job.spring = list.spring.data();
+  job.result = list.result.data();
+  job.begin = 0;
+  job.end = list.size();
+  job.dt = world_->dt;
+  job.box = world_->grid.box();
+  job.laws = world_->laws.view();
+  return job;
+}
+
+template <int Dim>
+void Lane<Dim>::begin_step(const StepFrame& frame) {
+  frame_ = frame;
+  if (world_->search == ContactSearchKind::AllPairs) research_owned();
+  rows_done_ = bands_[Left].exists ? bands_[Left].rows.end : 0;
+  if (frame_.sum_walls) wall_sums_.assign(world_->walls.size(), {});
+  if (!bonds_.empty()) compute_bonds(BondSet<Dim>::Owned);
+}
+
+template <int Dim>
+void Lane<Dim>::run_chunk(int chunk) {
+  const auto c = static_cast<std::size_t>(chunk);
+  for (int b = chunks_[c]; b < chunks_[c + 1]; ++b) run_block(blocks_[static_cast<std::size_t>(b)]);
+}
+
+template <int Dim>
+void Lane<Dim>::run_block(const Block& block) {
+  PairList& list = lists_[static_cast<std::size_t>(block.list)];
+  PairJob pairs = job(list);
+  pairs.begin = block.begin;
+  pairs.end = block.end;
+  (list.result.empty() ? world_->kernels.pairs : world_->kernels.pairs_kept)(pairs);
+  if (block.final_row > rows_done_) {
+    finish_rows(rows_done_, block.final_row, block.has_extras);
+    rows_done_ = block.final_row;
+  }
+}
+
+template <int Dim>
+void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extras) {
+  if (has_extras || !store_.external.empty()) {
+    bonds_.add_to_rows(store_, begin, end);
+    const std::span<WallSums> sums = frame_.sum_walls ? std::span<WallSums>(wall_sums_) : std::span<WallSums>();
+    walls_.add_to_rows(store_, {world_->wall_specs, world_->walls, &world_->laws, world_->dt, sums}, begin, end);
+    if (!store_.external.empty()) {
+      const auto from = static_cast<std::size_t>(begin) * L::kForce, to = static_cast<std::size_t>(end) * L::kForce;
+      for (std::size_t c = from; c < to; ++c) store_.force[c] += store_.external[c];
+    }
+  }
+  RowJob rows{store_.motion.data(), store_.spin.data(), store_.force.data(), begin, end, frame_.kick, world_->dt,
+              {frame_.gravity[0], frame_.gravity[1], frame_.gravity[2]}, frame_.local_damping};
+  (frame_.local_damping != 0.0 ? world_->kernels.rows_damped : world_->kernels.rows)(rows);
+}
+
+template <int Dim>
+void Lane<Dim>::unpack_halo(Side side, std::span<const std::byte> message) {
+  const std::int32_t begin = store_.ghost_begin(side), n = store_.num_ghosts[static_cast<std::size_t>(side)];
+  if (message.size() != static_cast<std::size_t>(n) * L::kHalo * sizeof(double)) {
+    throw RunError("a halo message has " + std::to_string(message.size()) + " bytes for " + std::to_string(n) + " ghosts");
+  }
+  const std::byte* from = message.data();
+  const auto take = [&from](double* to, int count) {
+    std::memcpy(to, from, static_cast<std::size_t>(count) * sizeof(double));
+    from += static_cast<std::size_t>(count) * sizeof(double);
+  };
+  for (std::int32_t g = begin; g < begin + n; ++g) {
+    take(store_.x(g), Dim);
+    take(store_.v(g), Dim);
+    take(store_.u(g), kSpins<Dim>);
+  }
+}
+
+template <int Dim>
+std::size_t Lane<Dim>::halo_bytes(Side side) const {
+  const Rows rows = bands_[side].rows;
+  return static_cast<std::size_t>(rows.end - rows.begin) * L::kHalo * sizeof(double);
+}
+
+template <int Dim>
+void Lane<Dim>::pack_halo(Side side, std::span<std::byte> message) const {
+  std::byte* to = message.data();
+  const auto put = [&to](const double* from, int count) {
+    std::memcpy(to, from, static_cast<std::size_t>(count) * sizeof(double));
+    to += static_cast<std::size_t>(count) * sizeof(double);
+  };
+  const Rows rows = bands_[side].rows;
+  for (std::int32_t i = rows.begin; i < rows.end; ++i) {
+    put(store_.x(i), Dim);
+    put(store_.v(i), Dim);
+    put(store_.u(i), kSpins<Dim>);
+  }
+}
+
+template <int Dim>
+void Lane<Dim>::finish_band(Side side) {
+  Band& band = bands_[side];
+  if (world_->search == ContactSearchKind::AllPairs) research_across(side);
+  // Bonds come before contacts here too, as in begin_step: a pair whose bond breaks is in contact in the same step.
+  if (!bonds_.empty()) compute_bonds(side == Left ? BondSet<Dim>::Left : BondSet<Dim>::Right);
+  (band.across.result.empty() ? world_->kernels.pairs : world_->kernels.pairs_kept)(job(band.across));
+  if (band.ghosts_first) replay(band.rows);
+  finish_rows(band.rows.begin, band.rows.end, true);
+}
+
+template <int Dim>
+void Lane<Dim>::replay(Rows rows) {
+  for (const ListName name : {HeldLow, HeldHigh}) {
+    const PairList& list = lists_[name];
+    for (std::int64_t k = 0; k < list.size(); ++k) {
+      const auto at = static_cast<std::size_t>(k);
+      const double* f = list.result.data() + at * L::kForce;
+      if (list.i[at] >= rows.begin && list.i[at] < rows.end) {
+        double* row = store_.f(list.i[at]);
+        for (int c = 0; c < L::kForce; ++c) row[c] += f[c];
+      }
+      if (list.j[at] >= rows.begin && list.j[at] < rows.end) {
+        double* row = store_.f(list.j[at]);
+        for (int c = 0; c < Dim; ++c) row[c] -= f[c];
+        for (int c = L::kTorque; c < L::kTorque + kSpins<Dim>; ++c) row[c] += f[c];
+      }
+    }
+  }
+}
+
+template <int Dim>
+void Lane<Dim>::compute_bonds(typename BondSet<Dim>::Group group) {
+  const auto broken = bonds_.compute(group, store_, world_->bond_laws, world_->grid.box(), world_->dt);
+  for (const std::int32_t bond : broken) unbind(bond);
+  if (!broken.empty()) list_bonded();
+}
+
+template <int Dim>
+void Lane<Dim>::unbind(std::int32_t bond) {
+  const std::int32_t a = bonds_.end_a(bond), b = bonds_.end_b(bond);
+  const Slot at = slot(a, b);
+  if (at.list == nullptr) return;  // too far apart to be candidates
+  const auto law = world_->laws.code(store_.type[static_cast<std::size_t>(a)], store_.type[static_cast<std::size_t>(b)]);
+  at.list->code[static_cast<std::size_t>(at.k)] = law;
+}
+
+template class Lane<2>;
+template class Lane<3>;
+
+}  // namespace barchan

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+namespace barchan {
+
+/// Particles live in aligned records, so that a batch of pairs is aligned loads and a transpose:
+///
+///   2D  motion | x  y  r  –  | vx vy u  1/m |            force | fx fy ft – |
+///   3D  motion | x  y  z  r  | vx vy vz 1/m |  spin | ux uy uz – |  force | fx fy fz – | tx ty tz – |
+///
+/// u = r·omega is the surface speed [m/s]; ft, (tx ty tz) are torque / r [N]. A fixed particle has 1/m = 0.
+template <int Dim>
+struct Layout;
+
+template <>
+struct Layout<2> {
+  static constexpr int kMotion = 8, kRadius = 2, kVelocity = 4, kSurface = 6, kInverseMass = 7;
+  static constexpr int kSpin = 0;   ///< doubles per spin record: the surface speed is in the motion record
+  static constexpr int kForce = 4, kTorque = 2;
+  static constexpr int kSprings = 1;        ///< tangential spring components per contact
+  static constexpr int kHalo = 5;           ///< doubles per halo record: x y vx vy u
+  static constexpr double kSpinGain = 2.0;  ///< m r² / I of a disk
+};
+
+template <>
+struct Layout<3> {
+  static constexpr int kMotion = 8, kRadius = 3, kVelocity = 4, kSurface = 0, kInverseMass = 7;
+  static constexpr int kSpin = 4;
+  static constexpr int kForce = 8, kTorque = 4;
+  static constexpr int kSprings = 3;
+  static constexpr int kHalo = 9;           ///< x y z vx vy vz ux uy uz
+  static constexpr double kSpinGain = 2.5;  ///< m r² / I of a sphere
+};
+
+/// Pairs per batch; lists are padded to whole batches with pairs that never touch.
+inline constexpr int kBatch = 8;
+
+/// Allocates on cache lines, one line more than asked for.
+template <class T>
+struct CacheLineAllocator {
+  using value_type = T;
+  CacheLineAllocator() = default;
+  template <class U>
+  explicit CacheLineAllocator(const CacheLineAllocator<U>& /*other*/) {}
+
+  T* allocate(std::size_t n) {
+    const std::size_t bytes = (n * sizeof(T) + 127) / 64 * 64;
+    void* p = std::aligned_alloc(64, bytes);
+    if (p == nullptr) throw std::bad_alloc();
+    return static_cast<T*>(p);
+  }
+  void deallocate(T* p, std::size_t /*n*/) { std::free(p); }
+  template <class U>
+  bool operator==(const CacheLineAllocator<U>& /*other*/) const {
+    return true;
+  }
+};
+
+template <class T>
+using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
+
+}  // namespace barchan

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstdint>
+
+#include <barchan/core/layout.hpp>
+
+namespace barchan {
+
+/// Candidate pairs in canonical order, with their law and history; whole batches, padded with waste rows.
+struct PairList {
+  AlignedVector<std::int32_t> i, j;  ///< lower and higher of each pair
+  AlignedVector<std::uint8_t> code;  ///< law of each pair
+  AlignedVector<double> spring;      ///< per batch of eight: component by component
+  AlignedVector<std::int32_t> row_i, row_j;  ///< where forces go, if not to i and j
+  AlignedVector<double> result;              ///< a force record each, if kept
+
+  [[nodiscard]] std::int64_t size() const { return static_cast<std::int64_t>(i.size()); }
+  void clear() {
+    i.clear();
+    j.clear();
+    code.clear();
+    row_i.clear();
+    row_j.clear();
+  }
+  void push(std::int32_t a, std::int32_t b, std::uint8_t law) {
+    i.push_back(a);
+    j.push_back(b);
+    code.push_back(law);
+  }
+  /// Fills the last batch; the null law and radius zero make the padding harmless.
+  void pad(std::int32_t waste) {
+    while (size() % kBatch != 0) push(waste, waste + 1, 0);
+  }
+  template <int Dim>
+  void reset_springs() {
+    spring.assign(i.size() * Layout<Dim>::kSprings, 0.0);
+  }
+  template <int Dim>
+  [[nodiscard]] double* springs(std::int64_t k) {  ///< component c at [c·kBatch]
+    return spring.data() + (k / kBatch) * kBatch * Layout<Dim>::kSprings + k % kBatch;
+  }
+  template <int Dim>
+  [[nodiscard]] const double* springs(std::int64_t k) const {
+    return const_cast<PairList*>(this)->springs<Dim>(k);
+  }
+  template <int Dim>
+  [[nodiscard]] bool has_spring(std::int64_t k) const {
+    const double* s = springs<Dim>(k);
+    if constexpr (Dim == 2) return s[0] != 0.0;
+    return s[0] != 0.0 || s[kBatch] != 0.0 || s[2 * kBatch] != 0.0;
+  }
+  [[nodiscard]] std::size_t bytes() const {
+    return 4 * (i.capacity() + j.capacity() + row_i.capacity() + row_j.capacity()) + code.capacity() +
+           8 * (spring.capacity() + result.capacity());
+  }
+};
+
+}  // namespace barchan

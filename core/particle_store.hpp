@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include <barchan/core/layout.hpp>
+
+namespace barchan {
+
+/// Particles of one lane, in canonical order, then two rows that belong to nobody, then ghosts:
+///
+///   | owned 0 … n−1 | waste n, n+1 | left ghosts | right ghosts |
+///
+/// The waste rows pad batches of pairs (they never touch: radius 0) and take forces that are kept for later.
+template <int Dim>
+struct ParticleStore {
+  using L = Layout<Dim>;
+
+  AlignedVector<double> motion, spin, force;
+  AlignedVector<double> reference;  ///< owned: positions at the last rebuild, Dim each
+  AlignedVector<std::int64_t> id;
+  AlignedVector<std::int64_t> key;   ///< cell at the last rebuild
+  AlignedVector<std::uint8_t> type;  ///< material
+  AlignedVector<std::uint8_t> flags;
+  AlignedVector<double> external;  ///< owned: force records added each step; empty unless asked for
+  std::int32_t num_owned = 0;
+  std::array<std::int32_t, 2> num_ghosts{};
+
+  enum Flag : std::uint8_t { kFixed = 1, kBonded = 2 };
+
+  [[nodiscard]] std::int32_t waste() const { return num_owned; }
+  [[nodiscard]] std::int32_t ghost_begin(int side) const {
+    return num_owned + 2 + (side == 1 ? num_ghosts[0] : 0);
+  }
+  [[nodiscard]] std::int32_t size() const { return num_owned + 2 + num_ghosts[0] + num_ghosts[1]; }
+  [[nodiscard]] bool is_owned(std::int32_t i) const { return i < num_owned; }
+
+  [[nodiscard]] double* x(std::int32_t i) { return motion.data() + std::size_t{L::kMotion} * static_cast<std::size_t>(i); }
+  [[nodiscard]] const double* x(std::int32_t i) const {
+    return motion.data() + std::size_t{L::kMotion} * static_cast<std::size_t>(i);
+  }
+  [[nodiscard]] double* v(std::int32_t i) { return x(i) + L::kVelocity; }
+  [[nodiscard]] const double* v(std::int32_t i) const { return x(i) + L::kVelocity; }
+  /// Surface velocity u = r·omega.
+  [[nodiscard]] double* u(std::int32_t i) {
+    if constexpr (Dim == 2) return x(i) + L::kSurface;
+    return spin.data() + std::size_t{4} * static_cast<std::size_t>(i);
+  }
+  [[nodiscard]] const double* u(std::int32_t i) const { return const_cast<ParticleStore*>(this)->u(i); }
+  [[nodiscard]] double* f(std::int32_t i) { return force.data() + std::size_t{L::kForce} * static_cast<std::size_t>(i); }
+  [[nodiscard]] double radius(std::int32_t i) const { return x(i)[L::kRadius]; }
+  [[nodiscard]] double inverse_mass(std::int32_t i) const { return x(i)[L::kInverseMass]; }
+
+  /// Canonical order of any two, owned or ghost.
+  [[nodiscard]] bool precedes(std::int32_t a, std::int32_t b) const {
+    const auto p = static_cast<std::size_t>(a), q = static_cast<std::size_t>(b);
+    return key[p] != key[q] ? key[p] < key[q] : id[p] < id[q];
+  }
+
+  /// Makes room for all rows, waste rows set, forces zero.
+  void resize_for_ghosts();
+  [[nodiscard]] std::size_t bytes() const;
+};
+
+extern template struct ParticleStore<2>;
+extern template struct ParticleStore<3>;
+
+}  // namespace barchan

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <immintrin.h>
+
+#include <barchan/core/simd/avx2.hpp>
+
+namespace barchan::simd {
+
+/// Eight pairs at a time. Included only where the compiler is told of AVX-512.
+struct Avx512 {
+  using Real = double __attribute__((vector_size(64)));
+  struct Mask {
+    __mmask8 bits;
+  };
+  static constexpr int kWidth = 8;
+
+  BARCHAN_INLINE Real set(double a) { return Real(_mm512_set1_pd(a)); }
+  BARCHAN_INLINE Real sqrt(Real a) { return Real(_mm512_sqrt_pd(__m512d(a))); }
+  BARCHAN_INLINE Real abs(Real a) { return Real(_mm512_abs_pd(__m512d(a))); }
+  BARCHAN_INLINE Real copysign(Real magnitude, Real sign) {
+    return Real(_mm512_or_pd(__m512d(magnitude), _mm512_and_pd(_mm512_set1_pd(-0.0), __m512d(sign))));
+  }
+  BARCHAN_INLINE Real round(Real a) { return Real(_mm512_roundscale_pd(__m512d(a), 8)); }
+  BARCHAN_INLINE Mask less(Real a, Real b) {
+    return Mask{_mm512_cmp_pd_mask(__m512d(a), __m512d(b), _CMP_LT_OQ)};
+  }
+  BARCHAN_INLINE Real select(Mask m, Real a, Real b) {
+    return Real(_mm512_mask_blend_pd(m.bits, __m512d(b), __m512d(a)));
+  }
+  BARCHAN_INLINE bool any(Mask m) { return m.bits != 0; }
+
+  BARCHAN_INLINE Real load(const double* p) { return Real(_mm512_load_pd(p)); }
+  BARCHAN_INLINE void store(double* p, Real a) { _mm512_store_pd(p, __m512d(a)); }
+};
+
+}  // namespace barchan::simd

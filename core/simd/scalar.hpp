@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cmath>
+
+namespace barchan::simd {
+
+/// One pair at a time. The vector policies have the same members and give the same bits.
+struct Scalar {
+  using Real = double;
+  using Mask = bool;
+  static constexpr int kWidth = 1;
+
+  static Real set(double a) { return a; }
+  static Real sqrt(Real a) { return __builtin_sqrt(a); }
+  static Real abs(Real a) { return __builtin_fabs(a); }
+  /// `magnitude` >= 0 with the sign of `sign`.
+  static Real copysign(Real magnitude, Real sign) { return __builtin_copysign(magnitude, sign); }
+  static Real round(Real a) { return __builtin_rint(a); }
+  static Mask less(Real a, Real b) { return a < b; }
+  static Real select(Mask m, Real a, Real b) { return m ? a : b; }
+  static bool any(Mask m) { return m; }
+};
+
+}  // namespace barchan::simd
