@@ -1,0 +1,20 @@
+#pragma once
+
+#include <memory>
+
+#include <barchan/comm/slot_exchange.hpp>
+
+// One factory per exchange, each defined in the file of its name; exchange.cpp lists them.
+
+namespace barchan {
+
+std::unique_ptr<SlotExchange> make_put_flag(const Communicator& communicator, Neighbours neighbours);
+std::unique_ptr<SlotExchange> make_put_inband(const Communicator& communicator, Neighbours neighbours);
+std::unique_ptr<SlotExchange> make_get(const Communicator& communicator, Neighbours neighbours);
+std::unique_ptr<SlotExchange> make_shared_memory(const Communicator& communicator, Neighbours neighbours);
+std::unique_ptr<SlotExchange> make_pscw(const Communicator& communicator, Neighbours neighbours);
+std::unique_ptr<SlotExchange> make_fence(const Communicator& communicator, Neighbours neighbours);
+std::unique_ptr<SlotExchange> make_isend(const Communicator& communicator, Neighbours neighbours);
+std::unique_ptr<SlotExchange> make_sendrecv(const Communicator& communicator, Neighbours neighbours);
+
+}  // namespace barchan

@@ -1,0 +1,109 @@
+#include <algorithm>
+#include <exception>
+
+#include <barchan/comm/exchanges/all.hpp>
+#include <barchan/comm/mpi_error.hpp>
+#include <barchan/comm/mpi_session.hpp>
+#include <barchan/comm/slot_layout.hpp>
+#include <barchan/comm/window.hpp>
+
+namespace barchan {
+namespace {
+
+/// Fence, put, fence: one window per lane, and the n-th fence of all ranks closes message n of all.
+/// The fence is called by the first poll after both sides have been sent; it waits for every rank, so this exchange
+/// hides little, both sides go in step (no `return` scheme), every rank has a neighbour, and halo and bulk are not in
+/// flight at the same time.
+class Fence final : public SlotExchange {
+ public:
+  Fence(const Communicator& communicator, Neighbours neighbours)
+      : SlotExchange(communicator, neighbours), num_exceptions_(std::uncaught_exceptions()) {}
+
+  ~Fence() override {
+    if (!is_mpi_initialized() || std::uncaught_exceptions() > num_exceptions_) return;
+    try {
+      retire();
+    } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): nothing is left to be saved
+    }
+  }
+
+  std::string_view name() const override { return "fence"; }
+  bool is_blocking() const override { return true; }
+  bool allows_uneven_sides() const override { return false; }
+
+ protected:
+  void allocate(SlotCapacity capacity) override {
+    layout_ = SlotLayout{capacity};
+    num_fences_ = {};
+    num_posted_ = {};
+    for (Window& window : windows_) {
+      window = Window(communicator(), layout_.total());
+      check(MPI_Win_fence(MPI_MODE_NOPRECEDE, window.handle()), "MPI_Win_fence");
+    }
+    for (const Lane lane : {Lane::Halo, Lane::Bulk}) {
+      for (const Side side : {Side::Left, Side::Right}) {
+        outboxes_[index({lane, side, 0})].resize(slot_bytes(capacity.of(lane)));
+      }
+    }
+  }
+
+  void retire() override {
+    for (Window& window : windows_) {
+      if (window.handle() == MPI_WIN_NULL) continue;
+      check(MPI_Win_fence(MPI_MODE_NOSUCCEED, window.handle()), "MPI_Win_fence");
+      window.free();
+    }
+  }
+
+  std::byte* outbox(const MessageKey& key) override { return outboxes_[index(key)].data(); }
+
+  void post(const MessageKey& key, const MessageHeader& header) override {
+    write_header(header, outbox(key));
+    window(key).put({outbox(key), header_bytes + header.bytes}, neighbours().rank(key.side),
+                    layout_.slot(SlotLayout::at_receiver(key)));
+    num_posted_[index(key)] = key.number;
+  }
+
+  const std::byte* arrived(const MessageKey& key) override {
+    std::uint64_t& num_fences = num_fences_[static_cast<std::size_t>(key.lane)];
+    if (num_fences < key.number) {
+      if (!has_sent_both(key)) return nullptr;
+      check(MPI_Win_fence(0, window(key).handle()), "MPI_Win_fence");
+      ++num_fences;
+    }
+    return window(key).base() + layout_.slot(key);
+  }
+
+  std::size_t agree_rounds(std::size_t mine) override {
+    auto rounds = static_cast<std::int64_t>(mine);
+    communicator().allreduce_max(std::span(&rounds, 1));
+    return static_cast<std::size_t>(rounds);
+  }
+
+  std::string transport() const override { return "one-sided " + windows_[0].component(); }
+
+ private:
+  [[nodiscard]] bool has_sent_both(const MessageKey& key) const {
+    return std::ranges::all_of(std::array{Side::Left, Side::Right}, [&](Side side) {
+      return !neighbours().has(side) || num_posted_[index({key.lane, side, 0})] >= key.number;
+    });
+  }
+  [[nodiscard]] const Window& window(const MessageKey& key) const {
+    return windows_[static_cast<std::size_t>(key.lane)];
+  }
+
+  std::array<Window, num_lanes> windows_;
+  SlotLayout layout_;
+  std::array<std::vector<std::byte>, num_lane_sides> outboxes_;
+  std::array<std::uint64_t, num_lanes> num_fences_{};
+  std::array<std::uint64_t, num_lane_sides> num_posted_{};
+  int num_exceptions_;
+};
+
+}  // namespace
+
+std::unique_ptr<SlotExchange> make_fence(const Communicator& communicator, Neighbours neighbours) {
+  return std::make_unique<Fence>(communicator, neighbours);
+}
+
+}  // namespace barchan

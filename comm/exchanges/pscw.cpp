@@ -1,0 +1,121 @@
+#include <exception>
+
+#include <barchan/comm/exchanges/all.hpp>
+#include <barchan/comm/mpi_error.hpp>
+#include <barchan/comm/mpi_session.hpp>
+#include <barchan/comm/window.hpp>
+
+namespace barchan {
+namespace {
+
+/// Post, start, put, complete, test: general active-target synchronisation, one window per slot.
+///
+/// A slot's window is exposed to the one neighbour that writes it: for messages 1 and 2 from the beginning, for n+2
+/// when n is released. So the window that A starts on for n+1 has been posted when B released n−1, which A knows from
+/// B's message n, and MPI_Win_start does not wait.
+class Pscw final : public SlotExchange {
+ public:
+  Pscw(const Communicator& communicator, Neighbours neighbours)
+      : SlotExchange(communicator, neighbours), num_exceptions_(std::uncaught_exceptions()) {
+    make_group(Side::Left);
+    make_group(Side::Right);
+  }
+
+  ~Pscw() override {
+    if (!is_mpi_initialized() || std::uncaught_exceptions() > num_exceptions_) return;
+    try {
+      retire();
+    } catch (const std::exception&) {  // NOLINT(bugprone-empty-catch): nothing is left to be saved
+    }
+    for (MPI_Group& group : groups_) {
+      if (group != MPI_GROUP_NULL) MPI_Group_free(&group);
+    }
+  }
+
+  std::string_view name() const override { return "pscw"; }
+
+ protected:
+  void allocate(SlotCapacity capacity) override {
+    for_slots([&](const MessageKey& key) {
+      window(key) = Window(communicator(), slot_bytes(capacity.of(key.lane)));
+      expose(key);
+      outboxes_[index(key)].resize(slot_bytes(capacity.of(key.lane)));
+    });
+  }
+
+  // An exposure ends only by an access, so each window sees one more, empty, in each direction.
+  void retire() override {
+    for_slots([&](const MessageKey& key) {
+      Window& slot = window(key);
+      if (slot.handle() == MPI_WIN_NULL) return;
+      const Side reader = opposite(key.side);
+      if (neighbours().has(reader)) {
+        check(MPI_Win_start(groups_[index(reader)], 0, slot.handle()), "MPI_Win_start");
+        check(MPI_Win_complete(slot.handle()), "MPI_Win_complete");
+      }
+      if (neighbours().has(key.side)) check(MPI_Win_wait(slot.handle()), "MPI_Win_wait");
+      slot.free();
+    });
+  }
+
+  std::byte* outbox(const MessageKey& key) override { return outboxes_[index(key)].data(); }
+
+  void post(const MessageKey& key, const MessageHeader& header) override {
+    write_header(header, outbox(key));
+    const Window& slot = window({key.lane, opposite(key.side), key.number});
+    check(MPI_Win_start(groups_[index(key.side)], 0, slot.handle()), "MPI_Win_start");
+    slot.put({outbox(key), header_bytes + header.bytes}, neighbours().rank(key.side), 0);
+    check(MPI_Win_complete(slot.handle()), "MPI_Win_complete");
+  }
+
+  const std::byte* arrived(const MessageKey& key) override {
+    int is_there = 0;
+    check(MPI_Win_test(window(key).handle(), &is_there), "MPI_Win_test");
+    return is_there != 0 ? window(key).base() : nullptr;
+  }
+
+  void recycle(const MessageKey& key) override { expose(key); }
+
+  std::string transport() const override {
+    return "one-sided " + windows_[0][0].component();
+  }
+
+ private:
+  template <class Act>
+  void for_slots(Act act) {
+    for (const Lane lane : {Lane::Halo, Lane::Bulk}) {
+      for (const Side side : {Side::Left, Side::Right}) {
+        for (const std::uint64_t number : {1U, 2U}) act(MessageKey{lane, side, number});
+      }
+    }
+  }
+
+  void make_group(Side side) {
+    if (!neighbours().has(side)) return;
+    MPI_Group all = MPI_GROUP_NULL;
+    const int rank = neighbours().rank(side);
+    check(MPI_Comm_group(communicator().handle(), &all), "MPI_Comm_group");
+    check(MPI_Group_incl(all, 1, &rank, &groups_[index(side)]), "MPI_Group_incl");
+    check(MPI_Group_free(&all), "MPI_Group_free");
+  }
+
+  void expose(const MessageKey& key) {
+    if (!neighbours().has(key.side)) return;
+    check(MPI_Win_post(groups_[index(key.side)], 0, window(key).handle()), "MPI_Win_post");
+  }
+
+  Window& window(const MessageKey& key) { return windows_[index(key)][static_cast<std::size_t>(key.slot())]; }
+
+  std::array<std::array<Window, 2>, num_lane_sides> windows_;
+  std::array<std::vector<std::byte>, num_lane_sides> outboxes_;
+  std::array<MPI_Group, 2> groups_{MPI_GROUP_NULL, MPI_GROUP_NULL};
+  int num_exceptions_;
+};
+
+}  // namespace
+
+std::unique_ptr<SlotExchange> make_pscw(const Communicator& communicator, Neighbours neighbours) {
+  return std::make_unique<Pscw>(communicator, neighbours);
+}
+
+}  // namespace barchan

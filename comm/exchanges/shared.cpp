@@ -1,0 +1,68 @@
+#include <atomic>
+
+#include <barchan/comm/exchanges/all.hpp>
+#include <barchan/comm/mpi_error.hpp>
+#include <barchan/comm/slot_layout.hpp>
+#include <barchan/comm/window.hpp>
+
+namespace barchan {
+namespace {
+
+/// Memory that the ranks of a node share: the sender packs into its own slot and stores the number into its own word
+/// (release); the reader looks at that word (acquire) and reads the slot in place. No copy and no MPI call in a step.
+class SharedMemory final : public SlotExchange {
+ public:
+  using SlotExchange::SlotExchange;
+  std::string_view name() const override { return "shared"; }
+
+ protected:
+  void allocate(SlotCapacity capacity) override {
+    if (!communicator().all_of(communicator().node_size() == communicator().size())) {
+      throw InputError("exchange 'shared' needs all ranks on one node",
+                       "use --exchange put-flag, or isend where windows do not work");
+    }
+    layout_ = SlotLayout{capacity};
+    window_ = Window(communicator(), layout_.total(), Window::Memory::Shared);
+    window_.lock_all();
+    for (const Side side : {Side::Left, Side::Right}) {
+      if (neighbours().has(side)) {
+        theirs_[index(side)] = window_.base_of(neighbours().rank(side));
+      }
+    }
+  }
+
+  void retire() override { window_.free(); }
+
+  std::byte* outbox(const MessageKey& key) override { return window_.base() + layout_.slot(key); }
+
+  void post(const MessageKey& key, const MessageHeader& header) override {
+    write_header(header, outbox(key));
+    word(window_.base(), key).store(key.number, std::memory_order_release);
+  }
+
+  const std::byte* arrived(const MessageKey& key) override {
+    const MessageKey at_sender = SlotLayout::at_receiver(key);  // the sender's name for it: the other side
+    std::byte* sender = theirs_[index(key.side)];
+    if (word(sender, at_sender).load(std::memory_order_acquire) < key.number) return nullptr;
+    return sender + layout_.slot(at_sender);
+  }
+
+  std::string transport() const override { return "shared memory"; }
+
+ private:
+  [[nodiscard]] std::atomic_ref<std::uint64_t> word(std::byte* base, const MessageKey& key) const {
+    return std::atomic_ref(*reinterpret_cast<std::uint64_t*>(base + layout_.word(key)));
+  }
+
+  Window window_;
+  SlotLayout layout_;
+  std::array<std::byte*, 2> theirs_{};
+};
+
+}  // namespace
+
+std::unique_ptr<SlotExchange> make_shared_memory(const Communicator& communicator, Neighbours neighbours) {
+  return std::make_unique<SharedMemory>(communicator, neighbours);
+}
+
+}  // namespace barchan

@@ -1,0 +1,53 @@
+#include <barchan/comm/mpi_session.hpp>
+
+#include <exception>
+
+#include <barchan/comm/mpi_error.hpp>
+
+namespace barchan {
+
+MpiSession::MpiSession() { start(nullptr, nullptr); }
+MpiSession::MpiSession(int& argc, char**& argv) { start(&argc, &argv); }
+
+void MpiSession::start(int* argc, char*** argv) {
+  if (is_mpi_initialized()) return;
+  int provided = MPI_THREAD_SINGLE;
+  check(MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &provided), "MPI_Init_thread");
+  is_owner_ = true;
+  if (provided < MPI_THREAD_SERIALIZED) {
+    MPI_Finalize();
+    is_owner_ = false;
+    throw RunError("this MPI library gives less than MPI_THREAD_SERIALIZED, which barchan needs: "
+                   "use one that was built with thread support");
+  }
+}
+
+MpiSession::~MpiSession() {
+  if (is_owner_ && is_mpi_initialized()) MPI_Finalize();
+}
+
+std::string mpi_library_version() {
+  char text[MPI_MAX_LIBRARY_VERSION_STRING] = {};
+  int length = 0;
+  check(MPI_Get_library_version(text, &length), "MPI_Get_library_version");
+  const std::string whole(text, static_cast<std::size_t>(length));
+  return whole.substr(0, whole.find_first_of("\n,"));
+}
+
+std::string mpi_thread_level() {
+  int level = MPI_THREAD_SINGLE;
+  check(MPI_Query_thread(&level), "MPI_Query_thread");
+  if (level == MPI_THREAD_MULTIPLE) return "multiple";
+  if (level == MPI_THREAD_SERIALIZED) return "serialized";
+  return level == MPI_THREAD_FUNNELED ? "funneled" : "single";
+}
+
+bool is_mpi_initialized() {
+  int is_initialized = 0;
+  int is_finalized = 0;
+  MPI_Initialized(&is_initialized);
+  MPI_Finalized(&is_finalized);
+  return is_initialized != 0 && is_finalized == 0;
+}
+
+}  // namespace barchan

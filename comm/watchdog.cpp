@@ -1,0 +1,52 @@
+#include <barchan/comm/watchdog.hpp>
+
+#include <atomic>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <sstream>
+
+#include <barchan/core/error.hpp>
+
+namespace barchan {
+namespace {
+
+constexpr double default_limit = 120.0;
+
+double limit_of_environment() {
+  const char* text = std::getenv("BARCHAN_WAIT_LIMIT");
+  if (text == nullptr || *text == '\0') return default_limit;
+  double seconds = 0.0;
+  const char* end = text + std::strlen(text);
+  const auto [stop, error] = std::from_chars(text, end, seconds);
+  if (error != std::errc{} || stop != end || !(seconds > 0.0) || !std::isfinite(seconds)) {
+    throw InputError(std::string("BARCHAN_WAIT_LIMIT is '") + text + "'", "give a positive number of seconds");
+  }
+  return seconds;
+}
+
+std::atomic<double>& limit() {
+  static std::atomic<double> seconds{limit_of_environment()};
+  return seconds;
+}
+
+}  // namespace
+
+double wait_limit() { return limit().load(std::memory_order_relaxed); }
+
+void set_wait_limit(double seconds) {
+  if (!(seconds > 0.0) || !std::isfinite(seconds)) {
+    throw InputError("wait limit is not a positive number", "give a positive number of seconds");
+  }
+  limit().store(seconds, std::memory_order_relaxed);
+}
+
+void Watchdog::expire(const std::string& what) const {
+  std::ostringstream text;
+  text << "waited " << seconds() << " s in vain for " << what
+       << "; another rank may have died or hang (the limit is BARCHAN_WAIT_LIMIT, in seconds)";
+  throw RunError(text.str());
+}
+
+}  // namespace barchan

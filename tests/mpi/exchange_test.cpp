@@ -1,0 +1,246 @@
+// Values encode rank, side, step and index, so that a message that lands in the wrong place or step shows.
+
+#include <barchan/comm/exchange.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <ostream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <barchan/comm/watchdog.hpp>
+#include <barchan/core/error.hpp>
+
+namespace barchan {
+namespace {
+
+constexpr std::array both_sides{Side::Left, Side::Right};
+
+std::size_t length_of(int rank, Side side, int step, std::size_t at_most) {
+  std::mt19937_64 random(static_cast<std::uint64_t>(rank * 2 + static_cast<int>(side)) * 1000003U +
+                         static_cast<std::uint64_t>(step));
+  if (random() % 8 == 0) return 0;
+  if (random() % 8 == 0) return at_most;
+  return random() % (at_most + 1);
+}
+
+std::byte value_of(int rank, Side side, int step, std::size_t index) {
+  const auto word = static_cast<std::uint64_t>(rank + 1) * 0x9E3779B97F4A7C15U ^
+                    static_cast<std::uint64_t>(static_cast<int>(side) + 1) * 0xC2B2AE3D27D4EB4FU ^
+                    static_cast<std::uint64_t>(step) * 0x165667B19E3779F9U ^ index * 0x27D4EB2F165667C5U;
+  return static_cast<std::byte>(word >> 40 & 0xFF);
+}
+
+void fill(std::span<std::byte> bytes, int rank, Side side, int step) {
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = value_of(rank, side, step, i);
+}
+
+std::vector<std::byte> message_of(int rank, Side side, int step, std::size_t length) {
+  std::vector<std::byte> bytes(length);
+  fill(bytes, rank, side, step);
+  return bytes;
+}
+
+struct Case {
+  std::string exchange;
+  bool is_periodic = false;
+};
+
+class ExchangeOfEveryKind : public testing::TestWithParam<Case> {
+ protected:
+  ExchangeOfEveryKind() : neighbours_(strip_neighbours(comm_.rank(), comm_.size(), GetParam().is_periodic)) {}
+
+  std::unique_ptr<Exchange> make(const ExchangeOptions& options = {}) {
+    return make_exchange(GetParam().exchange, comm_, neighbours_, options);
+  }
+
+  void send(Exchange& exchange, Side side, int step, std::size_t at_most) {
+    if (!neighbours_.has(side)) return;
+    const std::size_t length = length_of(comm_.rank(), side, step, at_most);
+    fill(exchange.outgoing(side, length), comm_.rank(), side, step);
+    exchange.send(side);
+  }
+
+  void receive(Exchange& exchange, Side side, int step, std::size_t at_most) {
+    if (!neighbours_.has(side)) return;
+    wait_until([&] { return exchange.poll(side); }, [&] { return "step " + std::to_string(step); });
+    const int from = neighbours_.rank(side);
+    const auto expected = message_of(from, opposite(side), step, length_of(from, opposite(side), step, at_most));
+    const auto received = exchange.received(side);
+    ASSERT_EQ(received.size(), expected.size()) << "step " << step << " " << name_of(side);
+    ASSERT_TRUE(std::ranges::equal(received, expected)) << "step " << step << " " << name_of(side);
+    exchange.release(side);
+  }
+
+  void run_steps(Exchange& exchange, int begin, int end, std::size_t at_most) {
+    for (int step = begin; step < end; ++step) {
+      for (const Side side : both_sides) send(exchange, side, step, at_most);
+      const bool is_left_first = step % 3 != 0;
+      receive(exchange, is_left_first ? Side::Left : Side::Right, step, at_most);
+      receive(exchange, is_left_first ? Side::Right : Side::Left, step, at_most);
+      if (HasFatalFailure()) comm_.abort(1);
+    }
+  }
+
+  std::vector<std::byte> bulk_of(int rank, Side side, int step, std::size_t at_most) {
+    return message_of(rank, side, step, length_of(rank, side, step, at_most));
+  }
+
+  void run_bulk(Exchange& exchange, int step, std::size_t at_most) {
+    const auto mine = [&](Side side) {
+      return neighbours_.has(side) ? bulk_of(comm_.rank(), side, step, at_most) : std::vector<std::byte>{};
+    };
+    exchange.begin_bulk(mine(Side::Left), mine(Side::Right));
+    wait_until([&] { return exchange.poll_bulk(); }, [&] { return "bulk " + std::to_string(step); });
+    for (const Side side : both_sides) {
+      const int from = neighbours_.rank(side);
+      const auto expected = from < 0 ? std::vector<std::byte>{} : bulk_of(from, opposite(side), step, at_most);
+      EXPECT_TRUE(exchange.bulk(side) == expected) << "bulk " << step << " " << name_of(side);
+    }
+    if (HasFailure()) comm_.abort(1);
+  }
+
+  Communicator comm_ = Communicator::world();
+  Neighbours neighbours_;
+};
+
+TEST_P(ExchangeOfEveryKind, BringsEveryHaloToTheRightPlaceInTheRightStep) {
+  const auto exchange = make({.halo_bytes = 10000});
+
+  run_steps(*exchange, 0, 400, 10000);
+
+  const ExchangeStats stats = exchange->stats();
+  const auto num_sides = static_cast<std::uint64_t>(neighbours_.has(Side::Left) + neighbours_.has(Side::Right));
+  EXPECT_EQ(stats.halo_messages, 400 * num_sides);
+  EXPECT_FALSE(stats.transport.empty());
+  EXPECT_EQ(exchange->name(), GetParam().exchange);
+}
+
+TEST_P(ExchangeOfEveryKind, GrowsInMidRunAndLosesNothing) {
+  const auto exchange = make({.halo_bytes = 64, .bulk_bytes = 64});
+  std::size_t room = 64;
+
+  for (int growth = 0; growth < 6; ++growth) {
+    exchange->reserve(room);
+    run_steps(*exchange, 100 * growth, 100 * growth + 20, room);
+    run_bulk(*exchange, growth, 3 * room);
+    room = room * 7 + 13;
+  }
+
+  EXPECT_GE(exchange->stats().growths, 4U);
+  EXPECT_EQ(exchange->stats().bulk_capacity > 64U, comm_.size() > 1);
+}
+
+TEST_P(ExchangeOfEveryKind, ReservingNoMoreThanThereIsChangesNothing) {
+  const auto exchange = make({.halo_bytes = 1000});
+
+  exchange->reserve(500);
+  exchange->reserve(1000);
+
+  EXPECT_EQ(exchange->stats().growths, 0U);
+}
+
+TEST_P(ExchangeOfEveryKind, MovesBulksOfAnyLengthThroughSmallSlots) {
+  const auto exchange = make({.halo_bytes = 256, .bulk_bytes = 1000});
+
+  for (int step = 0; step < 60; ++step) {
+    run_bulk(*exchange, step, step % 10 == 0 ? 0 : 5000);
+    run_steps(*exchange, 4 * step, 4 * step + 4, 256);
+  }
+
+  EXPECT_TRUE(exchange->poll_bulk());
+}
+
+TEST_P(ExchangeOfEveryKind, MovesBulksOfMegabytes) {
+  const auto exchange = make({.halo_bytes = 256, .bulk_bytes = 100000});
+
+  for (int step = 0; step < 4; ++step) run_bulk(*exchange, step, 3000000);
+
+  EXPECT_TRUE(exchange->poll_bulk());
+}
+
+TEST_P(ExchangeOfEveryKind, KeepsTheBytesBehindRandomDelays) {
+  const auto exchange = make({.halo_bytes = 3000, .bulk_bytes = 500, .max_delay_seconds = 4e-4, .delay_seed = 7});
+
+  for (int round = 0; round < 15; ++round) {
+    run_steps(*exchange, 10 * round, 10 * round + 10, 3000);
+    run_bulk(*exchange, round, 2000);
+  }
+
+  EXPECT_TRUE(exchange->poll_bulk());
+}
+
+// The `return` scheme: a band goes right, and only the neighbour's answer to it goes left.
+TEST_P(ExchangeOfEveryKind, AnswersWithinTheStepWhereSidesMayBeUneven) {
+  const auto exchange = make({.halo_bytes = 2000});
+  if (!exchange->allows_uneven_sides()) GTEST_SKIP() << "both sides go in step here";
+
+  for (int step = 0; step < 200; ++step) {
+    send(*exchange, Side::Right, step, 2000);
+    receive(*exchange, Side::Left, step, 2000);
+    send(*exchange, Side::Left, step, 2000);
+    receive(*exchange, Side::Right, step, 2000);
+    if (HasFatalFailure()) comm_.abort(1);
+  }
+
+  EXPECT_FALSE(exchange->poll(Side::Left) && !neighbours_.has(Side::Left));
+}
+
+TEST_P(ExchangeOfEveryKind, RefusesToPackAheadOfTheNeighbour) {
+  const auto exchange = make();
+  if (comm_.size() > 1) {
+    for (const Side side : both_sides) send(*exchange, side, 0, 100);
+    const Side side = neighbours_.has(Side::Left) ? Side::Left : Side::Right;
+
+    EXPECT_THROW(static_cast<void>(exchange->outgoing(side, 8)), std::logic_error);
+
+    receive(*exchange, Side::Left, 0, 100);
+    receive(*exchange, Side::Right, 0, 100);
+    EXPECT_THROW(static_cast<void>(exchange->outgoing(side, std::size_t{1} << 20)), std::logic_error);
+  }
+  if (!neighbours_.has(Side::Left)) {
+    EXPECT_THROW(static_cast<void>(exchange->outgoing(Side::Left, 8)), std::logic_error);
+    EXPECT_FALSE(exchange->poll(Side::Left));
+  }
+  comm_.barrier();
+}
+
+void PrintTo(const Case& each, std::ostream* out) {
+  *out << each.exchange << (each.is_periodic ? ", periodic" : ", open");
+}
+
+std::vector<Case> every_case() {
+  std::vector<Case> cases;
+  for (const std::string& name : exchange_names()) {
+    cases.push_back({name, false});
+    cases.push_back({name, true});
+  }
+  return cases;
+}
+
+INSTANTIATE_TEST_SUITE_P(Comm, ExchangeOfEveryKind, testing::ValuesIn(every_case()), [](const auto& instance) {
+  std::string name = instance.param.exchange;
+  std::ranges::replace(name, '-', '_');
+  return name + (instance.param.is_periodic ? "_periodic" : "_open");
+});
+
+TEST(Exchange, TellsTheKnownNamesWhenAskedForAnUnknownOne) {
+  const auto comm = Communicator::world();
+
+  try {
+    static_cast<void>(make_exchange("put-flg", comm, {}));
+    FAIL() << "an unknown exchange was made";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("put-flag"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("sendrecv"), std::string::npos) << error.what();
+  }
+}
+
+TEST(Exchange, PutFlagIsTheFirstName) { EXPECT_EQ(exchange_names().front(), "put-flag"); }
+
+}  // namespace
+}  // namespace barchan
