@@ -16,8 +16,12 @@ constexpr int kMaxRounds = 150;
 /// (measured).
 double densest_fraction(const PackSpace& space, const SizeDistribution& sizes) {
   const int dimension = space.box.dimension;
-  const double layer =
-      (dimension == 2 ? 0.5 : 0.35) * 0.5 * (sizes.min_radius() + sizes.max_radius());
+  double weight = 0.0, mean = 0.0;
+  for (const RadiusClass& size : sizes.classes) {
+    weight += size.weight;
+    mean += size.weight * 0.5 * (size.min + size.max);
+  }
+  const double layer = (dimension == 2 ? 0.5 : 0.35) * mean / weight;
   double fraction = random_close_fraction(sizes, dimension);
   for (int axis = 0; axis < dimension; ++axis) {
     if (space.box.periodic[static_cast<std::size_t>(axis)]) continue;

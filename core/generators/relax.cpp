@@ -206,6 +206,7 @@ void relax(const PackSpace& space, std::vector<Grain>& grains, double tolerance,
 }
 
 std::vector<double> overlap_ratios(const PackSpace& space, std::span<const Grain> grains) {
+  constexpr double kMuchLarger = 1.5;
   std::vector<double> worst(grains.size());
   for (std::size_t i = 0; i < grains.size(); ++i)
     worst[i] = space.intrusion(grains[i]) / grains[i].radius;
@@ -213,8 +214,8 @@ std::vector<double> overlap_ratios(const PackSpace& space, std::span<const Grain
     const double distance = space.box.difference(grains[i].position, grains[j].position).norm();
     const double reach = grains[i].radius + grains[j].radius;
     const double ratio = (reach - distance) / std::min(grains[i].radius, grains[j].radius);
-    worst[i] = std::max(worst[i], ratio);
-    worst[j] = std::max(worst[j], ratio);
+    if (grains[i].radius < kMuchLarger * grains[j].radius) worst[i] = std::max(worst[i], ratio);
+    if (grains[j].radius < kMuchLarger * grains[i].radius) worst[j] = std::max(worst[j], ratio);
     return true;
   });
   return worst;

@@ -31,7 +31,9 @@ struct PackSpace {
 void relax(const PackSpace& space, std::vector<Grain>& grains, double tolerance,
            int max_iterations);
 
-/// Largest overlap of each grain over the smaller radius of the pair; walls and holes count too.
+/// Largest overlap of each grain over the smaller radius of the pair; walls and holes count too. A
+/// pair of very different sizes counts for its smaller grain only, since that is the one to take
+/// out.
 [[nodiscard]] std::vector<double> overlap_ratios(const PackSpace& space,
                                                  std::span<const Grain> grains);
 
