@@ -22,7 +22,8 @@ BondSection bond_section(const BondLaw& law, double length, double radius_a, dou
     s.inertia = 0.25 * s.area * r * r;
     s.polar = 2.0 * s.inertia;
   }
-  const double normal = law.young_modulus / length, shear = normal / law.stiffness_ratio;
+  const double normal = law.normal_stiffness > 0.0 ? law.normal_stiffness : law.young_modulus / length;
+  const double shear = normal / law.stiffness_ratio;
   s.kn = normal * s.area;
   s.ks = shear * s.area;
   s.bending = normal * s.inertia;
@@ -114,6 +115,29 @@ void BondSet<Dim>::add_to_rows(ParticleStore<Dim>& store, std::int32_t begin, st
     const Record& record = force_[static_cast<std::size_t>(it->bond)][it->is_b ? 1 : 0];
     double* f = store.f(it->row);
     for (std::size_t c = 0; c < record.size(); ++c) f[c] += record[c];
+  }
+}
+
+template <int Dim>
+void BondSet<Dim>::export_group(Group group, std::vector<double>& out) const {
+  const auto g = static_cast<std::size_t>(group);
+  for (std::int32_t b = group_begin_[g]; b < group_begin_[g + 1]; ++b) {
+    for (const Record& record : force_[static_cast<std::size_t>(b)]) out.insert(out.end(), record.begin(), record.end());
+    out.push_back(is_broken(b) ? 1.0 : 0.0);
+  }
+}
+
+template <int Dim>
+void BondSet<Dim>::import_group(Group group, const ParticleStore<Dim>& store, const double* in) {
+  const auto g = static_cast<std::size_t>(group);
+  for (std::int32_t b = group_begin_[g]; b < group_begin_[g + 1]; ++b) {
+    for (Record& record : force_[static_cast<std::size_t>(b)]) {
+      std::copy_n(in, record.size(), record.begin());
+      in += record.size();
+    }
+    const bool broke = *in++ != 0.0;
+    if (broke && !is_broken(b) && store.is_owned(end_a(b))) ++num_broken_;
+    broken_[static_cast<std::size_t>(b)] = broke ? 1 : 0;
   }
 }
 

@@ -54,6 +54,14 @@ class BondSet {
   /// Adds the kept forces to rows [begin, end), each row's in canonical order of the partner.
   void add_to_rows(ParticleStore<Dim>& store, std::int32_t begin, std::int32_t end) const;
 
+  // The published exchange: one side of a cut computes, the other takes the forces. kExported doubles a bond.
+  static constexpr int kExported = 2 * Layout<Dim>::kForce + 1;
+  [[nodiscard]] std::int32_t size(Group group) const {
+    return group_begin_[static_cast<std::size_t>(group) + 1] - group_begin_[static_cast<std::size_t>(group)];
+  }
+  void export_group(Group group, std::vector<double>& out) const;
+  void import_group(Group group, const ParticleStore<Dim>& store, const double* in);
+
   [[nodiscard]] std::int32_t end_a(std::int32_t bond) const { return ends_[static_cast<std::size_t>(bond)].first; }
   [[nodiscard]] std::int32_t end_b(std::int32_t bond) const { return ends_[static_cast<std::size_t>(bond)].second; }
   [[nodiscard]] bool is_broken(std::int32_t bond) const { return broken_[static_cast<std::size_t>(bond)]; }

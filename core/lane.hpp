@@ -95,10 +95,13 @@ class Lane {
   void finish_band(Side side);
   [[nodiscard]] std::size_t halo_bytes(Side side) const;
   void pack_halo(Side side, std::span<std::byte> message) const;
-  // The published scheme: the owner of the right-hand side computes, the other one takes the results.
-  [[nodiscard]] std::size_t results_bytes(Side side) const;
-  void pack_results(Side side, std::span<std::byte> message) const;
-  void finish_band_from_results(Side side, std::span<const std::byte> message);
+  // The published scheme (lane_results.cpp): the lane right of a cut computes, the other one takes the results.
+  /// Upper bound of a results message until the next rebuild.
+  [[nodiscard]] std::size_t max_results_bytes(Side side) const;
+  /// Forces of the pairs and bonds of the left cut, after finish_band(Left).
+  [[nodiscard]] std::vector<double> results() const;
+  /// Instead of finish_band(Right). @param results  what results() gave on the other side
+  void finish_right_band(std::span<const double> results);
 
   // ---- the rebuild (lane_rebuild.cpp), in this order
   /// Instead of begin_rebuild at the start of a run: owns these particles and bonds. @pre they lie in the slabs
@@ -165,7 +168,6 @@ class Lane {
   void replay(Rows rows);
   void compute_bonds(typename BondSet<Dim>::Group group);
   void unbind(std::int32_t bond);
-  void add_results(const Band& band, const double* result);
   void research_owned();
   void research_across(Side side);
 

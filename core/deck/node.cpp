@@ -4,9 +4,20 @@
 #include <utility>
 
 #include <fmt/format.h>
+
+// The library takes some malformed text for a broken promise of its own: it would abort, or with
+// NDEBUG trust the promise. Here it throws instead.
+namespace barchan::deck {
+struct BrokenPromise {};
+constexpr void keep_promise(bool is_kept) {
+  if (!is_kept) throw BrokenPromise{};
+}
+}  // namespace barchan::deck
+#undef NDEBUG
+#define TOML_ASSERT(promise) ::barchan::deck::keep_promise(static_cast<bool>(promise))
 #include <toml++/toml.h>
 
-#include <barchan/core/deck/key_depth.hpp>
+#include <barchan/core/deck/text_check.hpp>
 
 namespace barchan::deck {
 
@@ -68,6 +79,28 @@ Node convert(const toml::node& source, const FileName& file) {
   return node;
 }
 
+bool is_broken(std::string_view text) {
+  try {
+    (void)toml::parse(text);
+  } catch (const toml::parse_error&) {  // says its place by itself
+  } catch (const BrokenPromise&) {
+    return true;
+  }
+  return false;
+}
+
+/// The least number of lines that is broken: the library reads from front to back, so more lines
+/// stay broken.
+std::int64_t first_broken_line(std::string_view text) {
+  std::vector<std::size_t> ends;  // of lines
+  for (std::size_t at = text.find('\n'); at < text.size(); at = text.find('\n', at + 1)) {
+    ends.push_back(at);
+  }
+  const auto line = std::partition_point(
+      ends.begin(), ends.end(), [&](std::size_t end) { return !is_broken(text.substr(0, end)); });
+  return 1 + (line - ends.begin());
+}
+
 }  // namespace
 
 SourcePlace Node::place() const {
@@ -106,7 +139,8 @@ std::string_view kind_name(Node::Kind kind) {
 }
 
 Node parse_toml(std::string_view text, const std::string& file_name) {
-  check_key_depth(text, file_name);
+  check_text(text, file_name);
+  const char* remedy = "write `key = value`, one a line, strings in double quotes";
   try {
     const toml::table table = toml::parse(text, file_name);
     return convert(table, std::make_shared<const std::string>(file_name));
@@ -114,8 +148,9 @@ Node parse_toml(std::string_view text, const std::string& file_name) {
     const toml::source_position at = error.source().begin;
     throw InputError(
         {file_name, static_cast<std::int64_t>(at.line), static_cast<std::int64_t>(at.column)},
-        fmt::format("this is not TOML: {}", error.description()),
-        "write `key = value`, one a line, strings in double quotes");
+        fmt::format("this is not TOML: {}", error.description()), remedy);
+  } catch (const BrokenPromise&) {
+    throw InputError({file_name, first_broken_line(text), 0}, "this is not TOML", remedy);
   }
 }
 

@@ -1,0 +1,56 @@
+#include <barchan/tasks/rebuild_schedule.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include <barchan/core/error.hpp>
+
+namespace barchan {
+
+RebuildSchedule::RebuildSchedule(const Communicator& communicator, double skin, double dt, double gravity)
+    : reduction_(communicator, 2, 0), skin_(skin), dt_(dt), gravity_(gravity) {}
+
+int RebuildSchedule::next_interval(double distance, double speed, double skin, double dt, double gravity, int last) {
+  const auto is_safe = [&](int n) {
+    const double t = (2 * kLag + n) * dt;
+    return distance + 2.0 * speed * t + gravity * t * t <= 0.5 * skin;
+  };
+  if (!is_safe(0)) return -1;
+  int n = std::clamp(2 * last, 1, kLongest);
+  while (n > 0 && !is_safe(n)) --n;
+  return n;
+}
+
+void RebuildSchedule::begin_check(const Travel& mine) {
+  const double maxima[2] = {mine.distance2, mine.speed2};
+  reduction_.begin(maxima, {});
+}
+
+void RebuildSchedule::poll() {
+  if (reduction_.is_in_flight()) (void)reduction_.test();
+}
+
+bool RebuildSchedule::must_rebuild(std::int64_t step) {
+  if (step != check_step_ + kLag) return false;
+  reduction_.wait();
+  const double distance = std::sqrt(reduction_.maxima()[0]), speed = std::sqrt(reduction_.maxima()[1]);
+  if (!(distance <= 0.5 * skin_)) {
+    throw RunError(fmt::format("at step {} a particle had moved {:.3g} m since the lists were built, more than half the skin of {:.3g} m "
+                               "(largest speed {:.3g} m/s): contacts may have been missed; give a larger search.skin or a smaller time.step",
+                               step - kLag, distance, skin_, speed));
+  }
+  const int n = next_interval(distance, speed, skin_, dt_, gravity_, interval_);
+  if (n < 0) return true;
+  interval_ = n;
+  check_step_ = step + n;
+  return false;
+}
+
+void RebuildSchedule::rebuilt(std::int64_t step) {
+  interval_ = std::max(interval_ / 2, 1);
+  check_step_ = step + interval_;
+}
+
+}  // namespace barchan

@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <barchan/comm/communicator.hpp>
+#include <barchan/comm/exchange.hpp>
+#include <barchan/core/lane.hpp>
+#include <barchan/core/model.hpp>
+#include <barchan/tasks/run_options.hpp>
+
+namespace barchan {
+
+/// One owned particle as callers see it. Positions are those of time(), velocities half a step earlier (leapfrog).
+struct OwnedParticle {
+  std::int64_t id;
+  std::int32_t type;  ///< material index
+  double radius, mass;  ///< mass of a fixed particle: infinite
+  Vec3 position, velocity, omega;
+};
+
+/// Where the time of a run went, this rank; workers' seconds are summed over threads.
+struct Timings {
+  double loop_seconds = 0.0;              ///< inside run()
+  std::map<std::string, double> phases;   ///< name → seconds
+  double in_flight_seconds = 0.0;         ///< halo messages under way
+  double exposed_seconds = 0.0;           ///< of that, with nothing else to do
+  std::int64_t rebuilds = 0, migrations = 0;
+  ExchangeStats exchange;                 ///< zero on one rank
+};
+
+/// A DEM simulation on all ranks of a communicator.
+///
+///     Simulation sim(model, particles, MPI_COMM_WORLD, options);
+///     while (sim.time() < end) {
+///       sim.apply_forces([](const OwnedParticle& p) { return Vec3(-0.1 * p.velocity); });
+///       sim.run(10);
+///     }
+///
+/// The state is the same to the bit for any number of ranks, threads and any exchange. The library works on a duplicate
+/// of the communicator, prints nothing and never ends the program.
+/// Construction, run, measure, digest and destruction are collective; the rest is local. One thread at a time.
+class Simulation {
+ public:
+  /// @param particles  all of them, the same on every rank
+  /// Errors: InputError, the same on every rank, for a model that cannot run (unstable step, too many ranks for the
+  /// domain, gross overlaps, unknown exchange or vector width).
+  Simulation(const Model& model, const ParticleSet& particles, MPI_Comm communicator, const RunOptions& options = {});
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  /// Advances by at most `num_steps`; fewer when a stop was requested. @return steps done
+  /// Errors: RunError, the same on every rank where all ranks can know it: a particle left the domain, the state is not
+  /// finite, a particle outran the skin; on one rank only: a wait without end.
+  std::int64_t run(std::int64_t num_steps);
+  /// Ends run() on all ranks within a few steps. Callable from a signal handler.
+  static void request_stop() noexcept;
+  [[nodiscard]] bool stopped() const;  ///< all ranks agreed to stop
+
+  [[nodiscard]] std::int64_t step() const;
+  [[nodiscard]] double time() const;  ///< [s]
+  [[nodiscard]] int stage() const;    ///< index into Model::stages
+  [[nodiscard]] const Model& model() const;
+  [[nodiscard]] const RunOptions& options() const;  ///< threads filled in
+  [[nodiscard]] std::string vector_width() const;   ///< in use
+  [[nodiscard]] const Communicator& communicator() const;
+
+  /// Calls `visit` for every particle that this rank owns, in canonical order.
+  void for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const;
+  [[nodiscard]] std::int64_t num_owned() const;
+  [[nodiscard]] std::int64_t num_particles() const;  ///< on all ranks
+  /// Sets a force [N] on every owned particle, added in every step until it is set again or cleared.
+  void apply_forces(const std::function<Vec3(const OwnedParticle&)>& force);
+  void clear_forces();
+
+  /// Energies, contacts, largest overlap, momentum; over all ranks. Collective.
+  [[nodiscard]] Measures measure();
+  /// Walls as they stand; force, torque and work as of the last measure(). Local.
+  [[nodiscard]] std::span<const WallState> walls() const;
+  /// State digest over all ranks (design: same bits everywhere). Collective.
+  [[nodiscard]] std::uint64_t digest();
+
+  [[nodiscard]] Timings timings() const;
+  [[nodiscard]] double skin() const;
+  [[nodiscard]] std::size_t memory_bytes() const;  ///< particles, lists, history of this rank
+
+ private:
+  class Engine;
+  template <int Dim>
+  class EngineOf;
+  std::unique_ptr<Engine> engine_;
+};
+
+/// Names that RunOptions::exchange takes, the default first: those of comm, and the published scheme `return`.
+std::vector<std::string> exchange_choices();
+
+}  // namespace barchan

@@ -1,0 +1,158 @@
+#include <barchan/tasks/strip.hpp>
+
+#include <algorithm>
+#include <cstring>
+
+#include <fmt/format.h>
+
+#include <barchan/comm/watchdog.hpp>
+#include <barchan/core/error.hpp>
+
+namespace barchan {
+namespace {
+
+template <int Dim>
+typename Lane<Dim>::Side in_core(Side side) {
+  return side == Side::Left ? Lane<Dim>::Left : Lane<Dim>::Right;
+}
+
+constexpr std::size_t at(Side side) { return static_cast<std::size_t>(side); }
+constexpr std::array<Side, 2> kSides{Side::Left, Side::Right};
+
+}  // namespace
+
+template <int Dim>
+Strip<Dim>::Strip(World<Dim>& world, const Communicator& communicator, std::unique_ptr<Exchange> exchange, int num_lanes,
+                  bool scheme_returns)
+    : world_(world), communicator_(communicator), exchange_(std::move(exchange)), sizes_(communicator, 1, 0),
+      neighbours_(strip_neighbours(communicator.rank(), communicator.size(), world.grid.is_periodic(0))),
+      returns_(scheme_returns), posts_(static_cast<std::size_t>(num_lanes)) {
+  for (int l = 0; l < num_lanes; ++l) lanes_.push_back(std::make_unique<Lane<Dim>>(world));
+  place_bands();
+}
+
+template <int Dim>
+bool Strip<Dim>::has_neighbour(int l, Side side) const {
+  return is_outer(l, side) ? neighbours_.has(side) || (communicator_.size() == 1 && num_lanes() > 1 && world_.grid.is_periodic(0))
+                           : true;
+}
+
+template <int Dim>
+void Strip<Dim>::place_bands() {
+  for (int l = 0; l < num_lanes(); ++l) {
+    const int place = first_lane() + l;
+    for (const Side side : kSides) {
+      Band& band = lane(l).band(in_core<Dim>(side));
+      band.exists = has_neighbour(l, side);
+      // Ghosts come first where the neighbour lies lower in the grid: always on the left, but around the end.
+      band.ghosts_first = side == Side::Left ? place > 0 : place + 1 == total_lanes();
+      band.returns = returns_ && is_outer(l, side) && neighbours_.has(side);
+    }
+  }
+}
+
+template <int Dim>
+void Strip<Dim>::finish_band(int l, Side side) {
+  Lane<Dim>& mine = lane(l);
+  const auto core_side = in_core<Dim>(side);
+  const Band& band = mine.band(core_side);
+  if (!is_outer(l, side) || !neighbours_.has(side)) {
+    if (!fresh_) {
+      const int n = num_lanes(), other = (l + (side == Side::Left ? n - 1 : 1)) % n;
+      mine.unpack_halo(core_side, posts_[static_cast<std::size_t>(other)].halo[static_cast<std::size_t>(parity_)][at(opposite(side))]);
+    }
+    return mine.finish_band(core_side);
+  }
+  if (band.returns && side == Side::Right) {
+    const auto message = exchange_->received(side);
+    std::vector<double> results(message.size() / sizeof(double));
+    std::memcpy(results.data(), message.data(), results.size() * sizeof(double));
+    exchange_->release(side);
+    return mine.finish_right_band(results);
+  }
+  if (awaits(side)) {
+    mine.unpack_halo(core_side, exchange_->received(side));
+    exchange_->release(side);
+  }
+  mine.finish_band(core_side);
+  if (!band.returns) return;
+  const std::vector<double> results = mine.results();
+  const auto message = exchange_->outgoing(side, results.size() * sizeof(double));
+  std::memcpy(message.data(), results.data(), message.size());
+  exchange_->send(side);
+}
+
+template <int Dim>
+void Strip<Dim>::send_band(int l, Side side) {
+  Lane<Dim>& mine = lane(l);
+  const auto core_side = in_core<Dim>(side);
+  if (is_outer(l, side) && neighbours_.has(side)) {
+    if (returns_ && side == Side::Left) return;  // ghosts go right only
+    mine.pack_halo(core_side, exchange_->outgoing(side, mine.halo_bytes(core_side)));
+    exchange_->send(side);
+    return;
+  }
+  auto& outbox = posts_[static_cast<std::size_t>(l)].halo[static_cast<std::size_t>(1 - parity_)][at(side)];
+  outbox.resize(mine.halo_bytes(core_side));
+  mine.pack_halo(core_side, outbox);
+}
+
+template <int Dim>
+void Strip<Dim>::end_step(bool sends) {
+  parity_ = 1 - parity_;
+  fresh_ = false;
+  for (const Side side : kSides) awaited_[at(side)] = sends && neighbours_.has(side);
+}
+
+template <int Dim>
+void Strip<Dim>::wait_halo(Side side) {
+  wait_until([&] { return exchange_->poll(side); },
+             [&] {
+               return fmt::format("rank {}: halo message from rank {} ({})", communicator_.rank(), neighbours_.rank(side), name_of(side));
+             });
+}
+
+template <int Dim>
+void Strip<Dim>::complete_halo() {
+  if (fresh_) return;
+  for (int l = 0; l < num_lanes(); ++l) {
+    for (const Side side : kSides) {
+      if (is_outer(l, side) || !has_neighbour(l, side)) continue;
+      const int other = l + (side == Side::Left ? -1 : 1);
+      lane(l).unpack_halo(in_core<Dim>(side), posts_[static_cast<std::size_t>(other)].halo[static_cast<std::size_t>(parity_)][at(opposite(side))]);
+    }
+  }
+  if (communicator_.size() == 1 && has_neighbour(0, Side::Left)) {  // around the end of a periodic strip axis
+    const int last = num_lanes() - 1;
+    const auto& boxes = [&](int l) -> auto& { return posts_[static_cast<std::size_t>(l)].halo[static_cast<std::size_t>(parity_)]; };
+    lane(0).unpack_halo(Lane<Dim>::Left, boxes(last)[at(Side::Right)]);
+    lane(last).unpack_halo(Lane<Dim>::Right, boxes(0)[at(Side::Left)]);
+  }
+  for (const Side side : kSides) {
+    if (!awaits(side) || (returns_ && side == Side::Right)) continue;
+    wait_halo(side);
+    lane(side == Side::Left ? 0 : num_lanes() - 1).unpack_halo(in_core<Dim>(side), exchange_->received(side));
+    exchange_->release(side);
+    awaited_[at(side)] = false;
+  }
+  fresh_ = true;
+}
+
+template <int Dim>
+std::int64_t Strip<Dim>::num_owned() const {
+  std::int64_t n = 0;
+  for (const auto& lane : lanes_) n += lane->store().num_owned;
+  return n;
+}
+
+template <int Dim>
+std::size_t Strip<Dim>::bytes() const {
+  std::size_t n = 0;
+  for (const auto& lane : lanes_) n += lane->bytes();
+  return n;
+}
+
+template class Strip<2>;
+template class Strip<3>;
+
+}  // namespace barchan

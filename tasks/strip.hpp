@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include <barchan/comm/communicator.hpp>
+#include <barchan/comm/exchange.hpp>
+#include <barchan/comm/reduction.hpp>
+#include <barchan/core/lane.hpp>
+
+namespace barchan {
+
+/// The strip of one rank: its lanes, one per thread, and what passes between lanes and between ranks.
+///
+///   ranks    |        0        |        1        |
+///   lanes    |   0    |   1    |   2    |   3    |      lane cuts lie on slab faces; rank cuts are every T-th of them
+///
+/// A cut between two lanes of one rank works like one between ranks, with an outbox in memory for a message: a lane
+/// writes the outbox of step k + 1 when its band is finished in step k. Outboxes come in pairs, so that the
+/// neighbour may still read the one of step k.
+template <int Dim>
+class Strip {
+ public:
+  /// @param scheme_returns  the published exchange: ghosts go right, forces come back left
+  Strip(World<Dim>& world, const Communicator& communicator, std::unique_ptr<Exchange> exchange, int num_lanes,
+        bool scheme_returns);
+
+  /// Cuts the domain for equal counts, keeps this rank's share, and builds all lists. Collective.
+  void seed(const ParticleSet& set);
+
+  /// Migration, canonical order, ghosts, lists, history. Collective; leaves ghosts up to date.
+  /// @param parallel  runs a function for every lane, on as many threads as there are
+  using ForEachLane = std::function<void(const std::function<void(int)>&)>;
+  void rebuild(const ForEachLane& parallel);
+
+  // ---- the step; side is one of this rank's two, lane one of its lanes
+  [[nodiscard]] int num_lanes() const { return static_cast<int>(lanes_.size()); }
+  Lane<Dim>& lane(int l) { return *lanes_[static_cast<std::size_t>(l)]; }
+  [[nodiscard]] const Lane<Dim>& lane(int l) const { return *lanes_[static_cast<std::size_t>(l)]; }
+  [[nodiscard]] bool is_outer(int l, Side side) const {
+    return side == Side::Left ? l == 0 : l + 1 == num_lanes();
+  }
+  /// Whether this band must wait for a message of another rank in this step.
+  [[nodiscard]] bool awaits(Side side) const { return awaited_[static_cast<std::size_t>(side)]; }
+  [[nodiscard]] bool poll(Side side) { return exchange_->poll(side); }
+  /// Ghosts in, pairs, rows: everything that a band needs, once its message is there.
+  void finish_band(int l, Side side);
+  /// Publishes the finished band for the next step. @pre finish_band
+  void send_band(int l, Side side);
+  /// After all bands: the next step's messages are expected.
+  void end_step(bool sends);
+  /// Waits for the messages of this step and unpacks them, without computing; for measurements between steps.
+  void complete_halo();
+
+  [[nodiscard]] const std::vector<int>& cuts() const { return cuts_; }
+  Exchange* exchange() { return exchange_.get(); }
+  [[nodiscard]] const Neighbours& neighbours() const { return neighbours_; }
+  [[nodiscard]] std::int64_t num_owned() const;
+  [[nodiscard]] std::int64_t num_rebuilds() const { return num_rebuilds_; }
+  [[nodiscard]] std::int64_t num_migrations() const { return num_migrations_; }  ///< particles that left this rank
+  [[nodiscard]] std::size_t bytes() const;
+  std::int64_t chunk_pairs = 1 << 14;  ///< pairs per chunk from the next rebuild on
+
+ private:
+  using Bytes = std::vector<std::byte>;
+  struct Post {  ///< messages of one lane
+    std::array<Bytes, 2> out;
+    std::array<std::array<Bytes, 2>, 2> halo;  ///< by parity and side
+  };
+
+  void place_bands();
+  void discard_pending();
+  void recut();
+  void migrate(const ForEachLane& parallel);
+  void exchange_ghosts(const ForEachLane& parallel);
+  void wait_bulk(const char* what);
+  void wait_halo(Side side);
+  [[nodiscard]] bool has_neighbour(int l, Side side) const;
+  [[nodiscard]] int first_lane() const { return communicator_.rank() * num_lanes(); }
+  [[nodiscard]] int total_lanes() const { return communicator_.size() * num_lanes(); }
+  [[nodiscard]] std::size_t most_halo_bytes() const;
+
+  World<Dim>& world_;
+  const Communicator& communicator_;
+  std::unique_ptr<Exchange> exchange_;
+  Reduction sizes_;
+  Neighbours neighbours_;
+  bool returns_;
+  std::vector<std::unique_ptr<Lane<Dim>>> lanes_;
+  std::vector<Post> posts_;
+  std::vector<int> cuts_;
+  std::array<bool, 2> awaited_{};  ///< a message of another rank is due in this step
+  bool fresh_ = true;              ///< ghosts are up to date: nothing to unpack in this step
+  int parity_ = 0;
+  std::int64_t num_rebuilds_ = 0, num_migrations_ = 0;
+};
+
+extern template class Strip<2>;
+extern template class Strip<3>;
+
+}  // namespace barchan
