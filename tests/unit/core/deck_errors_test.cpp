@@ -74,6 +74,8 @@ INSTANTIATE_TEST_SUITE_P(
               "",
               {":37:1:", "lacks the key 'material'"}},
         Fault{"NoToml", "step = 1e-4", "step = = 1", {":7:", "not TOML"}},
+        Fault{"LetterBeyondAscii", "step = 1e-4", "step = \u03da", {":7:", "beyond ASCII"}},
+        Fault{"HeaderWithoutName", "[[bond]]", "[[%]]", {":19:", "not TOML"}},
         Fault{"DeepKey",
               "gravity = ",
               "a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a = ",
