@@ -63,7 +63,7 @@ struct LatticeSource {
   SizeDistribution sizes;
   double spacing = 0.0;  ///< between nearest sites [m], at least 2·max_radius
   double jitter = 0.0;   ///< share of the free gap in [0, 1]: a shift in any direction of a length
-                        ///< up to jitter·(spacing/2 - radius), so neighbours never overlap
+                         ///< up to jitter·(spacing/2 - radius), so neighbours never overlap
   std::uint64_t seed = 1;  ///< of radii and jitter
 };
 

@@ -67,7 +67,7 @@ constexpr KeySpec kPhysicsKeys[] = {
     {"[[wall]]", "material", T::String, "", "required", "name of a material"},
     {"[[wall]]", "velocity", T::Vector, "m/s", "zero", "given; of a loaded plate, at its start"},
     {"[[wall]]", "width", T::PositiveNumber, "m", "none",
-     "plate only, required: 2D across the normal; 3D across the normal and as near x as can be"},
+     "plate only, required: across the normal; in 3D along the axis least aligned with it"},
     {"[[wall]]", "depth", T::PositiveNumber, "m", "none",
      "plate in 3D only, required: across normal and width"},
     {"[[wall]]", "load", T::NonNegativeNumber, "N/m²", "none",

@@ -168,7 +168,8 @@ TEST(Deck, LetsEachParticleOfAListOverrideItsSource) {
   const Deck deck = parse_edited({{ring, R"(kind = "list"
 velocity = [1.0, 0.0]
 particle = [{ position = [1.0, 4.0], radius = 0.1 },
-            { position = [2.0, 4.0], radius = 0.1, velocity = [0.0, 0.0], omega = 3.0, material = "soil" }]
+            { position = [2.0, 4.0], radius = 0.1, velocity = [0.0, 0.0],)"
+                                         R"( omega = 3.0, material = "soil" }]
 )"}});
 
   const auto& list = std::get<ListSource>(deck.sources[1].kind);
