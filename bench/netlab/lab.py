@@ -97,8 +97,10 @@ class Supervisor:
         self.start_forwarder(forwarder)
         for index, pid in enumerate(self.holders):
             self.connect(index, pid)
-        return self.watch(subprocess.Popen([AGENT, "--in", os.getcwd(), "lab1"] + command,
-                                           env=self.environment()).pid)
+        # Kept: a Popen that is collected as garbage reaps its process, and watch() would wait for ever.
+        self.program = subprocess.Popen([AGENT, "--in", os.getcwd(), "lab1"] + command,
+                                        env=self.environment())
+        return self.watch(self.program.pid)
 
     def hold(self, name):
         """Forks the process that keeps a host. Returns its PID once the host is there."""
