@@ -66,6 +66,7 @@ class Maker {
     }
   }
 
+  [[nodiscard]] std::size_t size() const { return set_.particles.size(); }
   [[nodiscard]] ParticleSet take() { return std::move(set_); }
 
  private:
@@ -214,8 +215,19 @@ bool is_inside(const Domain& domain, const Vec3& position, int dimension) {
 }
 
 ParticleSet make_particles(const Model& model, std::span<const ParticleSource> sources) {
+  std::vector<std::size_t> begins;
+  return make_particles(model, sources, begins);
+}
+
+ParticleSet make_particles(const Model& model, std::span<const ParticleSource> sources,
+                           std::vector<std::size_t>& begins) {
   Maker maker(model);
-  for (const ParticleSource& source : sources) maker.add(source);
+  begins.clear();
+  for (const ParticleSource& source : sources) {
+    begins.push_back(maker.size());
+    maker.add(source);
+  }
+  begins.push_back(maker.size());
   return maker.take();
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
+#include <vector>
 
 #include <barchan/core/model.hpp>
 #include <barchan/core/particle_source.hpp>
@@ -15,6 +17,11 @@ namespace barchan {
 ///         the domain, types without material, what does not fit into its region
 [[nodiscard]] ParticleSet make_particles(const Model& model,
                                          std::span<const ParticleSource> sources);
+
+/// The same. `begins` gets the index of every source's first particle, and at the end their number.
+[[nodiscard]] ParticleSet make_particles(const Model& model,
+                                         std::span<const ParticleSource> sources,
+                                         std::vector<std::size_t>& begins);
 
 /// Checks what came from generators or from a caller. @throws InputError naming the ids: a repeated
 /// id, a centre outside the domain, radius or density not positive, values that are not finite, a
