@@ -8,7 +8,8 @@
 namespace barchan {
 
 /// How a waiting thread spends its empty polls: spin, then give the core away, then sleep briefly.
-/// With more ranks than cores a rank that only spins starves the one that it waits for, for a whole time slice.
+/// With more ranks than cores a rank that only spins starves the one that it waits for, for a whole
+/// time slice.
 class Backoff {
  public:
   static constexpr int num_spins = 300;

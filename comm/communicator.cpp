@@ -24,7 +24,8 @@ void for_pieces(std::size_t bytes, Move move) {
 
 template <class T>
 void allreduce(MPI_Comm comm, std::span<T> values, MPI_Datatype type, MPI_Op op) {
-  check(MPI_Allreduce(MPI_IN_PLACE, values.data(), mpi_count(values.size()), type, op, comm), "MPI_Allreduce");
+  check(MPI_Allreduce(MPI_IN_PLACE, values.data(), mpi_count(values.size()), type, op, comm),
+        "MPI_Allreduce");
 }
 
 int allreduce_flag(MPI_Comm comm, bool mine, MPI_Op op) {
@@ -37,8 +38,9 @@ int allreduce_flag(MPI_Comm comm, bool mine, MPI_Op op) {
 
 Communicator::Communicator(MPI_Comm caller) {
   if (!is_mpi_initialized()) {
-    throw RunError("MPI is not running: call MPI_Init_thread with MPI_THREAD_SERIALIZED, or make a "
-                   "barchan::MpiSession, before using barchan");
+    throw RunError(
+        "MPI is not running: call MPI_Init_thread with MPI_THREAD_SERIALIZED, or make a "
+        "barchan::MpiSession, before using barchan");
   }
   check(MPI_Comm_dup(caller, &comm_), "MPI_Comm_dup");
   check(MPI_Comm_set_errhandler(comm_, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
@@ -47,7 +49,9 @@ Communicator::Communicator(MPI_Comm caller) {
   find_node();
 }
 
-Communicator::~Communicator() { free(); }
+Communicator::~Communicator() {
+  free();
+}
 
 Communicator::Communicator(Communicator&& other) noexcept
     : comm_(std::exchange(other.comm_, MPI_COMM_NULL)),
@@ -74,7 +78,8 @@ void Communicator::free() noexcept {
 
 void Communicator::find_node() {
   MPI_Comm node = MPI_COMM_NULL;
-  check(MPI_Comm_split_type(comm_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &node), "MPI_Comm_split_type");
+  check(MPI_Comm_split_type(comm_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &node),
+        "MPI_Comm_split_type");
   check(MPI_Comm_rank(node, &node_rank_), "MPI_Comm_rank");
   check(MPI_Comm_size(node, &node_size_), "MPI_Comm_size");
   check(MPI_Comm_free(&node), "MPI_Comm_free");
@@ -85,7 +90,9 @@ void Communicator::abort(int status) const {
   std::abort();
 }
 
-void Communicator::barrier() const { check(MPI_Barrier(comm_), "MPI_Barrier"); }
+void Communicator::barrier() const {
+  check(MPI_Barrier(comm_), "MPI_Barrier");
+}
 
 void Communicator::bcast(std::span<std::byte> bytes, int root) const {
   for_pieces(bytes.size(), [&](std::size_t offset, int count) {
@@ -110,16 +117,25 @@ void Communicator::allreduce_sum(std::span<std::uint64_t> values) const {
 void Communicator::allreduce_max(std::span<std::int64_t> values) const {
   allreduce(comm_, values, MPI_INT64_T, MPI_MAX);
 }
-void Communicator::allreduce_max(std::span<double> values) const { allreduce(comm_, values, MPI_DOUBLE, MPI_MAX); }
-void Communicator::allreduce_min(std::span<double> values) const { allreduce(comm_, values, MPI_DOUBLE, MPI_MIN); }
+void Communicator::allreduce_max(std::span<double> values) const {
+  allreduce(comm_, values, MPI_DOUBLE, MPI_MAX);
+}
+void Communicator::allreduce_min(std::span<double> values) const {
+  allreduce(comm_, values, MPI_DOUBLE, MPI_MIN);
+}
 
-bool Communicator::all_of(bool mine) const { return allreduce_flag(comm_, mine, MPI_LAND) != 0; }
-bool Communicator::any_of(bool mine) const { return allreduce_flag(comm_, mine, MPI_LOR) != 0; }
+bool Communicator::all_of(bool mine) const {
+  return allreduce_flag(comm_, mine, MPI_LAND) != 0;
+}
+bool Communicator::any_of(bool mine) const {
+  return allreduce_flag(comm_, mine, MPI_LOR) != 0;
+}
 
 std::vector<std::vector<std::byte>> Communicator::gather(std::span<const std::byte> mine) const {
   const std::uint64_t length = mine.size();
   std::vector<std::uint64_t> lengths(is_root() ? static_cast<std::size_t>(size_) : 0);
-  check(MPI_Gather(&length, 1, MPI_UINT64_T, lengths.data(), 1, MPI_UINT64_T, 0, comm_), "MPI_Gather");
+  check(MPI_Gather(&length, 1, MPI_UINT64_T, lengths.data(), 1, MPI_UINT64_T, 0, comm_),
+        "MPI_Gather");
   if (!is_root()) {
     for_pieces(mine.size(), [&](std::size_t offset, int count) {
       check(MPI_Send(mine.data() + offset, count, MPI_BYTE, 0, gather_tag, comm_), "MPI_Send");
@@ -132,7 +148,8 @@ std::vector<std::vector<std::byte>> Communicator::gather(std::span<const std::by
     auto& theirs = all[static_cast<std::size_t>(source)];
     theirs.resize(lengths[static_cast<std::size_t>(source)]);
     for_pieces(theirs.size(), [&](std::size_t offset, int count) {
-      check(MPI_Recv(theirs.data() + offset, count, MPI_BYTE, source, gather_tag, comm_, MPI_STATUS_IGNORE),
+      check(MPI_Recv(theirs.data() + offset, count, MPI_BYTE, source, gather_tag, comm_,
+                     MPI_STATUS_IGNORE),
             "MPI_Recv");
     });
   }
@@ -143,7 +160,8 @@ std::vector<std::string> Communicator::gather(const std::string& mine) const {
   std::vector<std::string> texts;
   for (const auto& bytes : gather(std::as_bytes(std::span(mine.data(), mine.size())))) {
     std::string text(bytes.size(), '\0');
-    std::copy(bytes.begin(), bytes.end(), std::as_writable_bytes(std::span(text.data(), text.size())).begin());
+    std::copy(bytes.begin(), bytes.end(),
+              std::as_writable_bytes(std::span(text.data(), text.size())).begin());
     texts.push_back(std::move(text));
   }
   return texts;

@@ -10,9 +10,9 @@
 
 namespace barchan {
 
-/// A private duplicate of the caller's communicator: our messages never meet the caller's, and errors come back
-/// as codes (MPI_ERRORS_RETURN), which are thrown as MpiError.
-/// Every member below "collective" is collective over all ranks. One thread at a time.
+/// A private duplicate of the caller's communicator: our messages never meet the caller's, and
+/// errors come back as codes (MPI_ERRORS_RETURN), which are thrown as MpiError. Every member below
+/// "collective" is collective over all ranks. One thread at a time.
 class Communicator {
  public:
   /// Duplicates `caller`. Collective. Errors: MpiError; RunError when MPI is not running.
@@ -26,7 +26,9 @@ class Communicator {
 
   [[nodiscard]] int rank() const { return rank_; }
   [[nodiscard]] int size() const { return size_; }
-  [[nodiscard]] int node_rank() const { return node_rank_; }  ///< among the ranks that share memory with this one
+  [[nodiscard]] int node_rank() const {
+    return node_rank_;
+  }  ///< among the ranks that share memory with this one
   [[nodiscard]] int node_size() const { return node_size_; }
   [[nodiscard]] bool is_root() const { return rank_ == 0; }
   [[nodiscard]] MPI_Comm handle() const { return comm_; }
@@ -37,10 +39,11 @@ class Communicator {
   // Collective.
   [[nodiscard]] Communicator duplicate() const { return Communicator(comm_); }
   void barrier() const;
-  void bcast(std::span<std::byte> bytes, int root = 0) const;             ///< same length on every rank
-  [[nodiscard]] std::string bcast(std::string text, int root = 0) const;  ///< any length; the root's text
-  void allreduce_sum(std::span<std::int64_t> values) const;               ///< in place, exact
-  void allreduce_sum(std::span<std::uint64_t> values) const;              ///< in place, modulo 2^64
+  void bcast(std::span<std::byte> bytes, int root = 0) const;  ///< same length on every rank
+  [[nodiscard]] std::string bcast(std::string text,
+                                  int root = 0) const;        ///< any length; the root's text
+  void allreduce_sum(std::span<std::int64_t> values) const;   ///< in place, exact
+  void allreduce_sum(std::span<std::uint64_t> values) const;  ///< in place, modulo 2^64
   void allreduce_max(std::span<std::int64_t> values) const;
   void allreduce_max(std::span<double> values) const;
   void allreduce_min(std::span<double> values) const;
@@ -51,8 +54,8 @@ class Communicator {
   [[nodiscard]] std::vector<std::vector<std::byte>> gather(std::span<const std::byte> mine) const;
   [[nodiscard]] std::vector<std::string> gather(const std::string& mine) const;
 
-  /// One verdict for all: when `error` is not empty on some rank, every rank gets the text of the lowest such
-  /// rank; else empty.
+  /// One verdict for all: when `error` is not empty on some rank, every rank gets the text of the
+  /// lowest such rank; else empty.
   [[nodiscard]] std::string first_error(const std::string& error) const;
 
  private:

@@ -8,15 +8,18 @@
 
 namespace barchan {
 
-DelayedExchange::DelayedExchange(std::unique_ptr<Exchange> inner, double max_delay_seconds, std::uint64_t seed)
+DelayedExchange::DelayedExchange(std::unique_ptr<Exchange> inner, double max_delay_seconds,
+                                 std::uint64_t seed)
     : inner_(std::move(inner)), max_delay_seconds_(max_delay_seconds), random_(seed) {}
 
 std::int64_t DelayedExchange::random_delay_ns() {
-  return static_cast<std::int64_t>(std::uniform_real_distribution<double>(0.0, 1e9 * max_delay_seconds_)(random_));
+  return static_cast<std::int64_t>(
+      std::uniform_real_distribution<double>(0.0, 1e9 * max_delay_seconds_)(random_));
 }
 
 void DelayedExchange::hold_sometimes() {
-  if (random_() % 4 == 0) std::this_thread::sleep_for(std::chrono::nanoseconds(random_delay_ns() / 4));
+  if (random_() % 4 == 0)
+    std::this_thread::sleep_for(std::chrono::nanoseconds(random_delay_ns() / 4));
 }
 
 void DelayedExchange::send(Side side) {
@@ -38,12 +41,15 @@ void DelayedExchange::release(Side side) {
   inner_->release(side);
 }
 
-void DelayedExchange::begin_bulk(std::span<const std::byte> to_left, std::span<const std::byte> to_right) {
+void DelayedExchange::begin_bulk(std::span<const std::byte> to_left,
+                                 std::span<const std::byte> to_right) {
   hold_sometimes();
   bulk_shown_at_ = 0;
   inner_->begin_bulk(to_left, to_right);
 }
 
-bool DelayedExchange::poll_bulk() { return inner_->poll_bulk() && is_shown(bulk_shown_at_); }
+bool DelayedExchange::poll_bulk() {
+  return inner_->poll_bulk() && is_shown(bulk_shown_at_);
+}
 
 }  // namespace barchan

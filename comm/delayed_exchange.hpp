@@ -8,15 +8,18 @@
 
 namespace barchan {
 
-/// Tests only: any exchange behind a network of moods. Hides what has arrived for a random time, per message and side,
-/// and now and then holds the rank before a send. Order and content are the inner exchange's.
+/// Tests only: any exchange behind a network of moods. Hides what has arrived for a random time,
+/// per message and side, and now and then holds the rank before a send. Order and content are the
+/// inner exchange's.
 class DelayedExchange final : public Exchange {
  public:
   DelayedExchange(std::unique_ptr<Exchange> inner, double max_delay_seconds, std::uint64_t seed);
 
   std::string_view name() const override { return inner_->name(); }
   void reserve(std::size_t bytes) override { inner_->reserve(bytes); }
-  std::span<std::byte> outgoing(Side side, std::size_t bytes) override { return inner_->outgoing(side, bytes); }
+  std::span<std::byte> outgoing(Side side, std::size_t bytes) override {
+    return inner_->outgoing(side, bytes);
+  }
   void send(Side side) override;
   bool poll(Side side) override;
   std::span<const std::byte> received(Side side) const override { return inner_->received(side); }

@@ -18,9 +18,11 @@ struct Entry {
 
 constexpr std::array entries{
     Entry{"put-flag", "one-sided: put, flush, flag word, flush", make_put_flag},
-    Entry{"put-inband", "one-sided: one put whose number and checksum say that it is whole", make_put_inband},
+    Entry{"put-inband", "one-sided: one put whose number and checksum say that it is whole",
+          make_put_inband},
     Entry{"get", "one-sided: a flag word, then the reader pulls by MPI_Rget", make_get},
-    Entry{"shared", "memory shared on one node: stores and an atomic word, no MPI in a step", make_shared_memory},
+    Entry{"shared", "memory shared on one node: stores and an atomic word, no MPI in a step",
+          make_shared_memory},
     Entry{"pscw", "one-sided: post, start, put, complete, test", make_pscw},
     Entry{"fence", "one-sided: put between fences of all ranks (blocking)", make_fence},
     Entry{"isend", "two-sided, non-blocking: MPI_Isend and persistent receives", make_isend},
@@ -38,12 +40,13 @@ const Entry& entry_of(std::string_view name) {
 
 }  // namespace
 
-std::unique_ptr<Exchange> make_exchange(std::string_view name, const Communicator& communicator, Neighbours neighbours,
-                                        const ExchangeOptions& options) {
+std::unique_ptr<Exchange> make_exchange(std::string_view name, const Communicator& communicator,
+                                        Neighbours neighbours, const ExchangeOptions& options) {
   std::unique_ptr<SlotExchange> exchange = entry_of(name).make(communicator, neighbours);
   exchange->start({options.halo_bytes, options.bulk_bytes});
   if (!(options.max_delay_seconds > 0.0)) return exchange;
-  const std::uint64_t seed = options.delay_seed * 1000003U + static_cast<std::uint64_t>(communicator.rank());
+  const std::uint64_t seed =
+      options.delay_seed * 1000003U + static_cast<std::uint64_t>(communicator.rank());
   return std::make_unique<DelayedExchange>(std::move(exchange), options.max_delay_seconds, seed);
 }
 
@@ -53,6 +56,8 @@ std::vector<std::string> exchange_names() {
   return names;
 }
 
-std::string exchange_summary(std::string_view name) { return std::string(entry_of(name).summary); }
+std::string exchange_summary(std::string_view name) {
+  return std::string(entry_of(name).summary);
+}
 
 }  // namespace barchan

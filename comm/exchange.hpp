@@ -24,34 +24,40 @@ struct ExchangeStats {
   std::uint64_t halo_capacity = 0;  ///< bytes a halo message may have now
   std::uint64_t bulk_capacity = 0;  ///< bytes a fragment may have now
   double send_seconds = 0.0;        ///< spent inside send(), halo and fragments
-  double flight_seconds = 0.0;      ///< halo: own send until the neighbour's message of that number was noticed
-  double bulk_seconds = 0.0;        ///< begin_bulk() until poll_bulk() was true
+  double flight_seconds =
+      0.0;  ///< halo: own send until the neighbour's message of that number was noticed
+  double bulk_seconds = 0.0;  ///< begin_bulk() until poll_bulk() was true
 
   [[nodiscard]] std::uint64_t messages() const { return halo_messages + bulk_messages; }
   [[nodiscard]] std::uint64_t bytes() const { return halo_bytes + bulk_bytes; }
 };
 
 /// Instants of the latest halo message on one side, steady clock [ns]; zero = not yet.
-/// `posted` was read on the neighbour's clock: comparable within a node, to be aligned between nodes.
+/// `posted` was read on the neighbour's clock: comparable within a node, to be aligned between
+/// nodes.
 struct HaloTimes {
   std::int64_t sent = 0;     ///< this rank's own message to that side
   std::int64_t posted = 0;   ///< the neighbour's message, by its clock
   std::int64_t noticed = 0;  ///< poll() was true for the first time
 };
 
-/// One way of exchanging halo and bulk (migration, rebuild ghosts) messages with the two neighbours.
+/// One way of exchanging halo and bulk (migration, rebuild ghosts) messages with the two
+/// neighbours.
 ///
-/// Halo: the n-th message to a side meets the n-th from it; lengths may differ by message and side. In time the
-/// sides are free, in count they are not: in every step one message each way per existing side. The order is
+/// Halo: the n-th message to a side meets the n-th from it; lengths may differ by message and side.
+/// In time the sides are free, in count they are not: in every step one message each way per
+/// existing side. The order is
 ///
-///     outgoing(n) → send(n)      poll(n) → received(n) → release(n)      release(n) → outgoing(n + 1)
+///     outgoing(n) → send(n)      poll(n) → received(n) → release(n)      release(n) → outgoing(n +
+///     1)
 ///
-/// for each side. The last edge is the caller's duty; with it two slots per direction are enough and nobody needs
-/// credits (slot_exchange.hpp proves it). A breach throws std::logic_error.
+/// for each side. The last edge is the caller's duty; with it two slots per direction are enough
+/// and nobody needs credits (slot_exchange.hpp proves it). A breach throws std::logic_error.
 ///
-/// One caller at a time. Construction, reserve and destruction are collective over the communicator; destruction
-/// while an exception unwinds frees nothing that would wait for the others. Errors: MpiError; RunError when a
-/// message is malformed or, in exchanges that block, does not come within wait_limit().
+/// One caller at a time. Construction, reserve and destruction are collective over the
+/// communicator; destruction while an exception unwinds frees nothing that would wait for the
+/// others. Errors: MpiError; RunError when a message is malformed or, in exchanges that block, does
+/// not come within wait_limit().
 class Exchange {
  public:
   virtual ~Exchange() = default;
@@ -61,9 +67,9 @@ class Exchange {
 
   [[nodiscard]] virtual std::string_view name() const = 0;
 
-  /// Makes room for halo messages of `bytes`, the same number on every rank (the global maximum). Grows only.
-  /// Collective when it grows, local and free when it need not. Between steps: every message sent has been received
-  /// and released.
+  /// Makes room for halo messages of `bytes`, the same number on every rank (the global maximum).
+  /// Grows only. Collective when it grows, local and free when it need not. Between steps: every
+  /// message sent has been received and released.
   virtual void reserve(std::size_t bytes) = 0;
 
   /// The buffer for the next halo message to `side`; valid until send. @pre bytes <= reserved
@@ -72,8 +78,8 @@ class Exchange {
   /// Starts the message; as early as possible. Does not wait for the neighbour.
   virtual void send(Side side) = 0;
 
-  /// True when the next message from `side` is in; stays true until release. Never blocks, but in exchanges that
-  /// is_blocking(). False without a neighbour on that side.
+  /// True when the next message from `side` is in; stays true until release. Never blocks, but in
+  /// exchanges that is_blocking(). False without a neighbour on that side.
   [[nodiscard]] virtual bool poll(Side side) = 0;
 
   /// @pre poll(side); valid until release
@@ -82,9 +88,11 @@ class Exchange {
   /// Consumed: the next message may be looked for.
   virtual void release(Side side) = 0;
 
-  /// Starts messages of any length to both neighbours (empty where there is none); the spans may go when this returns.
-  /// Local, but every rank does it equally often, and ends one before it begins the next.
-  virtual void begin_bulk(std::span<const std::byte> to_left, std::span<const std::byte> to_right) = 0;
+  /// Starts messages of any length to both neighbours (empty where there is none); the spans may go
+  /// when this returns. Local, but every rank does it equally often, and ends one before it begins
+  /// the next.
+  virtual void begin_bulk(std::span<const std::byte> to_left,
+                          std::span<const std::byte> to_right) = 0;
 
   /// True when both sides are complete, in and out.
   [[nodiscard]] virtual bool poll_bulk() = 0;
@@ -98,22 +106,28 @@ class Exchange {
   /// Whether poll waits for the neighbour: such an exchange hides nothing.
   [[nodiscard]] virtual bool is_blocking() const { return false; }
 
-  /// Whether a rank may wait for one side before it has sent to the other, as the `return` scheme does.
+  /// Whether a rank may wait for one side before it has sent to the other, as the `return` scheme
+  /// does.
   [[nodiscard]] virtual bool allows_uneven_sides() const { return true; }
 };
 
 struct ExchangeOptions {
-  std::size_t halo_bytes = 4096;         ///< first size of the halo slots, equal on every rank
-  std::size_t bulk_bytes = 256 * 1024;   ///< first size of a bulk fragment, equal on every rank; longer bulks go in rounds
-  double max_delay_seconds = 0.0;        ///< tests: hide arrived messages and hold sends up to this long; 0 = never
+  std::size_t halo_bytes = 4096;  ///< first size of the halo slots, equal on every rank
+  std::size_t bulk_bytes =
+      256 *
+      1024;  ///< first size of a bulk fragment, equal on every rank; longer bulks go in rounds
+  double max_delay_seconds =
+      0.0;  ///< tests: hide arrived messages and hold sends up to this long; 0 = never
   std::uint64_t delay_seed = 0;
 };
 
 /// Builds the exchange called `name` on a duplicate of `communicator`. Collective.
-/// Errors, the same on every rank: InputError for an unknown name (with the list), and, with the remedy, where this MPI
-/// or network cannot carry it.
-[[nodiscard]] std::unique_ptr<Exchange> make_exchange(std::string_view name, const Communicator& communicator,
-                                                      Neighbours neighbours, const ExchangeOptions& options = {});
+/// Errors, the same on every rank: InputError for an unknown name (with the list), and, with the
+/// remedy, where this MPI or network cannot carry it.
+[[nodiscard]] std::unique_ptr<Exchange> make_exchange(std::string_view name,
+                                                      const Communicator& communicator,
+                                                      Neighbours neighbours,
+                                                      const ExchangeOptions& options = {});
 
 /// Names that make_exchange takes, the default first.
 [[nodiscard]] std::vector<std::string> exchange_names();

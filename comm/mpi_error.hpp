@@ -28,7 +28,8 @@ class MpiError : public RunError {
 
 /// Holds every MPI return code against MPI_SUCCESS. Errors: MpiError.
 inline void check(int code, const char* call) {
-  if (code != MPI_SUCCESS) [[unlikely]] throw_mpi_error(code, call);
+  if (code != MPI_SUCCESS) [[unlikely]]
+    throw_mpi_error(code, call);
 }
 
 /// A byte count as MPI-3 takes it. Errors: RunError above 2 GiB - 1.

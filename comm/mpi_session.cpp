@@ -6,8 +6,12 @@
 
 namespace barchan {
 
-MpiSession::MpiSession() { start(nullptr, nullptr); }
-MpiSession::MpiSession(int& argc, char**& argv) { start(&argc, &argv); }
+MpiSession::MpiSession() {
+  start(nullptr, nullptr);
+}
+MpiSession::MpiSession(int& argc, char**& argv) {
+  start(&argc, &argv);
+}
 
 void MpiSession::start(int* argc, char*** argv) {
   if (is_mpi_initialized()) return;
@@ -17,8 +21,9 @@ void MpiSession::start(int* argc, char*** argv) {
   if (provided < MPI_THREAD_SERIALIZED) {
     MPI_Finalize();
     is_owner_ = false;
-    throw RunError("this MPI library gives less than MPI_THREAD_SERIALIZED, which barchan needs: "
-                   "use one that was built with thread support");
+    throw RunError(
+        "this MPI library gives less than MPI_THREAD_SERIALIZED, which barchan needs: "
+        "use one that was built with thread support");
   }
 }
 

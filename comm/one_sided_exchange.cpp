@@ -11,7 +11,8 @@ void OneSidedExchange::allocate(SlotCapacity capacity) {
   communicator().barrier();
   for (const Lane lane : {Lane::Halo, Lane::Bulk}) {
     for (const Side side : {Side::Left, Side::Right}) {
-      if (neighbours().has(side)) local_[index({lane, side, 0})].assign(slot_bytes(capacity.of(lane)), std::byte{});
+      if (neighbours().has(side))
+        local_[index({lane, side, 0})].assign(slot_bytes(capacity.of(lane)), std::byte{});
     }
   }
 }
@@ -19,12 +20,15 @@ void OneSidedExchange::allocate(SlotCapacity capacity) {
 void OneSidedExchange::put_word(const MessageKey& key, std::uint64_t value) {
   std::uint64_t& origin = word_values_[index(key)];
   origin = value;
-  window_.put(std::as_bytes(std::span(&origin, 1)), target(key), layout_.word(SlotLayout::at_receiver(key)));
+  window_.put(std::as_bytes(std::span(&origin, 1)), target(key),
+              layout_.word(SlotLayout::at_receiver(key)));
 }
 
 void OneSidedExchange::progress() const {
   int is_there = 0;
-  check(MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, communicator().handle(), &is_there, MPI_STATUS_IGNORE), "MPI_Iprobe");
+  check(MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, communicator().handle(), &is_there,
+                   MPI_STATUS_IGNORE),
+        "MPI_Iprobe");
   window_.sync();
 }
 

@@ -26,7 +26,9 @@ class OneSidedExchange : public SlotExchange {
   [[nodiscard]] const Window& window() const { return window_; }
   [[nodiscard]] const SlotLayout& layout() const { return layout_; }
   [[nodiscard]] int target(const MessageKey& key) const { return neighbours().rank(key.side); }
-  [[nodiscard]] std::byte* inbox(const MessageKey& key) const { return window_.base() + layout_.slot(key); }
+  [[nodiscard]] std::byte* inbox(const MessageKey& key) const {
+    return window_.base() + layout_.slot(key);
+  }
 
   /// Memory outside the window for one message per lane and side.
   [[nodiscard]] std::byte* local(const MessageKey& key) { return local_[index(key)].data(); }
@@ -39,14 +41,16 @@ class OneSidedExchange : public SlotExchange {
   /// Puts `value` into the receiver's word for this message; not flushed.
   void put_word(const MessageKey& key, std::uint64_t value);
 
-  /// Lets the library move what is under way (Open MPI has no progress thread), and makes puts visible.
+  /// Lets the library move what is under way (Open MPI has no progress thread), and makes puts
+  /// visible.
   void progress() const;
 
  private:
   Window window_;
   SlotLayout layout_;
   std::array<std::vector<std::byte>, num_lane_sides> local_;
-  std::array<std::uint64_t, num_lane_sides> word_values_{};  // a put's origin must live until it is flushed
+  std::array<std::uint64_t, num_lane_sides>
+      word_values_{};  // a put's origin must live until it is flushed
 };
 
 }  // namespace barchan

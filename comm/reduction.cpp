@@ -31,7 +31,8 @@ void fold(const std::uint64_t* theirs, std::uint64_t* mine) {
     mine[word] = std::bit_cast<std::uint64_t>(
         exact_max(std::bit_cast<double>(theirs[word]), std::bit_cast<double>(mine[word])));
   }
-  for (std::uint64_t word = first_value + num_maxima; word < num_words; ++word) mine[word] += theirs[word];
+  for (std::uint64_t word = first_value + num_maxima; word < num_words; ++word)
+    mine[word] += theirs[word];
 }
 
 void fold_records(void* theirs, void* mine, int* num_records, MPI_Datatype* /*record*/) {
@@ -76,8 +77,8 @@ struct Reduction::State {
     std::size_t other = 0;
     for (int rank = 0; rank < communicator.size(); ++rank) {
       if (rank == communicator.rank()) continue;
-      check(MPI_Recv_init(&theirs[other * mine.size()], bytes, MPI_BYTE, rank, direct_tag, communicator.handle(),
-                          &requests[other]),
+      check(MPI_Recv_init(&theirs[other * mine.size()], bytes, MPI_BYTE, rank, direct_tag,
+                          communicator.handle(), &requests[other]),
             "MPI_Recv_init");
       check(MPI_Send_init(mine.data(), bytes, MPI_BYTE, rank, direct_tag, communicator.handle(),
                           &requests[num_others + other]),
@@ -87,7 +88,8 @@ struct Reduction::State {
   }
 
   void prepare_tree() {
-    check(MPI_Type_contiguous(mpi_count(mine.size()), MPI_UINT64_T, &record), "MPI_Type_contiguous");
+    check(MPI_Type_contiguous(mpi_count(mine.size()), MPI_UINT64_T, &record),
+          "MPI_Type_contiguous");
     check(MPI_Type_commit(&record), "MPI_Type_commit");
     check(MPI_Op_create(fold_records, 1, &operation), "MPI_Op_create");
     requests.assign(1, MPI_REQUEST_NULL);
@@ -100,7 +102,8 @@ struct Reduction::State {
     if (is_direct) {
       check(MPI_Startall(static_cast<int>(requests.size()), requests.data()), "MPI_Startall");
     } else {
-      check(MPI_Iallreduce(mine.data(), result.data(), 1, record, operation, communicator.handle(), requests.data()),
+      check(MPI_Iallreduce(mine.data(), result.data(), 1, record, operation, communicator.handle(),
+                           requests.data()),
             "MPI_Iallreduce");
     }
   }
@@ -108,7 +111,8 @@ struct Reduction::State {
   bool has_come() {
     if (communicator.size() == 1) return true;
     int is_there = 0;
-    check(MPI_Testall(static_cast<int>(requests.size()), requests.data(), &is_there, MPI_STATUSES_IGNORE),
+    check(MPI_Testall(static_cast<int>(requests.size()), requests.data(), &is_there,
+                      MPI_STATUSES_IGNORE),
           "MPI_Testall");
     return is_there != 0;
   }
@@ -117,9 +121,11 @@ struct Reduction::State {
     is_in_flight = false;
     if (is_direct || communicator.size() == 1) {
       result = mine;
-      for (std::size_t at = 0; at < theirs.size(); at += mine.size()) fold(&theirs[at], result.data());
+      for (std::size_t at = 0; at < theirs.size(); at += mine.size())
+        fold(&theirs[at], result.data());
     }
-    for (std::size_t i = 0; i < num_maxima; ++i) result_maxima[i] = std::bit_cast<double>(result[first_value + i]);
+    for (std::size_t i = 0; i < num_maxima; ++i)
+      result_maxima[i] = std::bit_cast<double>(result[first_value + i]);
     for (std::size_t i = 0; i < num_sums; ++i) {
       result_sums[i] = static_cast<std::int64_t>(result[first_value + num_maxima + i]);
     }
@@ -159,7 +165,8 @@ Reduction::~Reduction() {
   if (!is_mpi_initialized()) return;
   if (state_->is_in_flight) {
     if (std::uncaught_exceptions() > state_->num_exceptions) {
-      static_cast<void>(state_.release());  // the library still writes into it, and the others may never come
+      static_cast<void>(
+          state_.release());  // the library still writes into it, and the others may never come
       return;
     }
     try {
@@ -203,8 +210,14 @@ void Reduction::wait() {
              });
 }
 
-std::span<const double> Reduction::maxima() const { return state_->result_maxima; }
-std::span<const std::int64_t> Reduction::sums() const { return state_->result_sums; }
-bool Reduction::is_in_flight() const { return state_->is_in_flight; }
+std::span<const double> Reduction::maxima() const {
+  return state_->result_maxima;
+}
+std::span<const std::int64_t> Reduction::sums() const {
+  return state_->result_sums;
+}
+bool Reduction::is_in_flight() const {
+  return state_->is_in_flight;
+}
 
 }  // namespace barchan

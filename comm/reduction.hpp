@@ -9,15 +9,17 @@
 
 namespace barchan {
 
-/// Non-blocking all-reduce of a fixed small set: maxima of doubles and sums of integers, both exact, so that the order of
-/// the ranks is nowhere in the result. NaN wins over any number; -0 becomes +0.
+/// Non-blocking all-reduce of a fixed small set: maxima of doubles and sums of integers, both
+/// exact, so that the order of the ranks is nowhere in the result. NaN wins over any number; -0
+/// becomes +0.
 ///
 ///     begin → test … test → maxima(), sums()    and again
 ///
-/// On up to `num_direct_ranks` ranks everybody sends to everybody (persistent requests: one message deep, which hides
-/// best and costs least on a node); on more one MPI_Iallreduce with an operation of our own. A lone rank only copies.
-/// Every instance has its own communicator, so several may be in flight, in any order on any rank.
-/// Construction is collective; begin is, too, but waits for nobody. One thread at a time.
+/// On up to `num_direct_ranks` ranks everybody sends to everybody (persistent requests: one message
+/// deep, which hides best and costs least on a node); on more one MPI_Iallreduce with an operation
+/// of our own. A lone rank only copies. Every instance has its own communicator, so several may be
+/// in flight, in any order on any rank. Construction is collective; begin is, too, but waits for
+/// nobody. One thread at a time.
 class Reduction {
  public:
   static constexpr int default_direct_ranks = 8;
@@ -28,14 +30,16 @@ class Reduction {
   Reduction(const Reduction&) = delete;
   Reduction& operator=(const Reduction&) = delete;
 
-  /// Errors: std::logic_error for other numbers of values than constructed, or while one is in flight.
+  /// Errors: std::logic_error for other numbers of values than constructed, or while one is in
+  /// flight.
   void begin(std::span<const double> maxima, std::span<const std::int64_t> sums);
-  /// True once the result is there, and until the next begin. Never blocks; lets the library make progress.
+  /// True once the result is there, and until the next begin. Never blocks; lets the library make
+  /// progress.
   [[nodiscard]] bool test();
   /// Errors: RunError after wait_limit().
   void wait();
 
-  [[nodiscard]] std::span<const double> maxima() const;     ///< @pre test()
+  [[nodiscard]] std::span<const double> maxima() const;      ///< @pre test()
   [[nodiscard]] std::span<const std::int64_t> sums() const;  ///< @pre test()
   [[nodiscard]] bool is_in_flight() const;
 

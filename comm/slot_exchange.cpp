@@ -13,7 +13,9 @@ namespace {
 constexpr std::array both_sides{Side::Left, Side::Right};
 constexpr std::size_t largest_fragment = std::size_t{16} << 20;
 
-double seconds_since(std::int64_t begin_ns) { return 1e-9 * static_cast<double>(now_ns() - begin_ns); }
+double seconds_since(std::int64_t begin_ns) {
+  return 1e-9 * static_cast<double>(now_ns() - begin_ns);
+}
 
 }  // namespace
 
@@ -21,7 +23,8 @@ SlotExchange::SlotExchange(const Communicator& communicator, Neighbours neighbou
     : communicator_(communicator.duplicate()), neighbours_(neighbours) {}
 
 void SlotExchange::start(SlotCapacity capacity) {
-  capacity_ = {round_to_line(capacity.halo), round_to_line(std::max<std::size_t>(capacity.bulk, 64))};
+  capacity_ = {round_to_line(capacity.halo),
+               round_to_line(std::max<std::size_t>(capacity.bulk, 64))};
   allocate(capacity_);
 }
 
@@ -35,7 +38,8 @@ void SlotExchange::reserve(std::size_t bytes) {
   retire();
   std::int64_t largest_bulk = static_cast<std::int64_t>(largest_bulk_);
   communicator_.allreduce_max(std::span(&largest_bulk, 1));  // also: everybody has retired
-  const auto wanted_bulk = std::min(static_cast<std::size_t>(largest_bulk) * 5 / 4, largest_fragment);
+  const auto wanted_bulk =
+      std::min(static_cast<std::size_t>(largest_bulk) * 5 / 4, largest_fragment);
   capacity_.halo = round_to_line(bytes + bytes / 2);
   capacity_.bulk = round_to_line(std::max(capacity_.bulk, wanted_bulk));
   tracks_ = {};
@@ -53,12 +57,14 @@ std::byte* SlotExchange::open_outbox(Lane lane, Side side, std::size_t bytes) {
   require_neighbour(side, "Exchange::outgoing");
   Track& mine = track(lane, side);
   if (mine.released < mine.sent) [[unlikely]] {
-    throw std::logic_error("Exchange::outgoing: the neighbour's message " + std::to_string(mine.sent) +
-                           " must be released before message " + std::to_string(mine.sent + 1) + " is packed");
+    throw std::logic_error("Exchange::outgoing: the neighbour's message " +
+                           std::to_string(mine.sent) + " must be released before message " +
+                           std::to_string(mine.sent + 1) + " is packed");
   }
   if (bytes > capacity_.of(lane)) [[unlikely]] {
-    throw std::logic_error("Exchange::outgoing: " + std::to_string(bytes) + " bytes are more than the " +
-                           std::to_string(capacity_.of(lane)) + " reserved");
+    throw std::logic_error("Exchange::outgoing: " + std::to_string(bytes) +
+                           " bytes are more than the " + std::to_string(capacity_.of(lane)) +
+                           " reserved");
   }
   mine.outgoing_bytes = bytes;
   mine.is_packing = true;
@@ -71,7 +77,8 @@ std::span<std::byte> SlotExchange::outgoing(Side side, std::size_t bytes) {
 
 void SlotExchange::post_message(Lane lane, Side side, bool has_more) {
   Track& mine = track(lane, side);
-  if (!mine.is_packing) [[unlikely]] throw std::logic_error("Exchange::send: no message was packed");
+  if (!mine.is_packing) [[unlikely]]
+    throw std::logic_error("Exchange::send: no message was packed");
   const std::int64_t begin = now_ns();
   MessageHeader header;
   header.number = ++mine.sent;
@@ -121,28 +128,34 @@ bool SlotExchange::poll(Side side) {
   HaloTimes& times = halo_times_[index(side)];
   times.noticed = now_ns();
   times.posted = mine.header.posted;
-  if (mine.sent == mine.header.number) stats_.flight_seconds += 1e-9 * static_cast<double>(times.noticed - times.sent);
+  if (mine.sent == mine.header.number)
+    stats_.flight_seconds += 1e-9 * static_cast<double>(times.noticed - times.sent);
   return true;
 }
 
 std::span<const std::byte> SlotExchange::received(Side side) const {
   const Track& mine = track(Lane::Halo, side);
-  if (!mine.is_in) [[unlikely]] throw std::logic_error("Exchange::received: no message is in");
+  if (!mine.is_in) [[unlikely]]
+    throw std::logic_error("Exchange::received: no message is in");
   return mine.payload;
 }
 
-void SlotExchange::release(Side side) { release_message(Lane::Halo, side); }
+void SlotExchange::release(Side side) {
+  release_message(Lane::Halo, side);
+}
 
 void SlotExchange::release_message(Lane lane, Side side) {
   Track& mine = track(lane, side);
-  if (!mine.is_in) [[unlikely]] throw std::logic_error("Exchange::release: no message is in");
+  if (!mine.is_in) [[unlikely]]
+    throw std::logic_error("Exchange::release: no message is in");
   mine.is_in = false;
   mine.payload = {};
   ++mine.released;
   recycle({lane, side, mine.released});
 }
 
-void SlotExchange::begin_bulk(std::span<const std::byte> to_left, std::span<const std::byte> to_right) {
+void SlotExchange::begin_bulk(std::span<const std::byte> to_left,
+                              std::span<const std::byte> to_right) {
   if (!bulk_sides_[0].is_done || !bulk_sides_[1].is_done) {
     throw std::logic_error("Exchange::begin_bulk: the last bulk is not complete");
   }
@@ -151,7 +164,8 @@ void SlotExchange::begin_bulk(std::span<const std::byte> to_left, std::span<cons
   largest_bulk_ = std::max(largest_bulk_, longest);
   prepare_bulk(Side::Left, to_left);
   prepare_bulk(Side::Right, to_right);
-  const std::size_t needed = std::max<std::size_t>(1, (longest + capacity_.bulk - 1) / capacity_.bulk);
+  const std::size_t needed =
+      std::max<std::size_t>(1, (longest + capacity_.bulk - 1) / capacity_.bulk);
   const std::size_t agreed = agree_rounds(needed);
   for (const Side side : both_sides) {
     if (agreed > 0) bulk_sides_[index(side)].num_rounds = agreed;

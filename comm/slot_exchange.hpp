@@ -16,20 +16,23 @@ struct SlotCapacity {
   [[nodiscard]] std::size_t of(Lane lane) const { return lane == Lane::Halo ? halo : bulk; }
 };
 
-/// What all exchanges have in common: numbers, headers, growth, bulk in fragments, figures. A derived class says
-/// where messages lie and how they travel (the protected part).
+/// What all exchanges have in common: numbers, headers, growth, bulk in fragments, figures. A
+/// derived class says where messages lie and how they travel (the protected part).
 ///
-/// Each lane has two slots per direction; message n uses slot n mod 2. Happens-before, A and B neighbours, one lane:
+/// Each lane has two slots per direction; message n uses slot n mod 2. Happens-before, A and B
+/// neighbours, one lane:
 ///
 ///     pack A(n) → post A(n) → arrived B(n) → release B(n)      and the same with A and B swapped
-///     release of n  →  pack of n+1, on either rank              (the duty of the caller, or of the rounds below)
+///     release of n  →  pack of n+1, on either rank              (the duty of the caller, or of the
+///     rounds below)
 /// hence
 ///     release B(n−1) → pack B(n) → post B(n) → arrived A(n) → release A(n) → pack A(n+1):
-/// when A packs n+1, B has released n−1, which was the last to use that slot, and A's own copy of n−1 has left.
+/// when A packs n+1, B has released n−1, which was the last to use that slot, and A's own copy of
+/// n−1 has left.
 ///
-/// Bulk: both neighbours send a fragment a round, empty or not, with a flag whether they have more; rounds go on while
-/// either has more, so both see the same end. A slot's capacity grows with reserve() to the largest bulk seen, so that
-/// steady rebuilds need one round.
+/// Bulk: both neighbours send a fragment a round, empty or not, with a flag whether they have more;
+/// rounds go on while either has more, so both see the same end. A slot's capacity grows with
+/// reserve() to the largest bulk seen, so that steady rebuilds need one round.
 class SlotExchange : public Exchange {
  public:
   SlotExchange(const Communicator& communicator, Neighbours neighbours);
@@ -52,19 +55,21 @@ class SlotExchange : public Exchange {
  protected:
   /// Slots for `capacity` on every rank, empty; numbers start again at 1. Collective.
   virtual void allocate(SlotCapacity capacity) = 0;
-  /// Gives up the slots; nothing is in flight. Collective; all ranks have done so before allocate is called.
+  /// Gives up the slots; nothing is in flight. Collective; all ranks have done so before allocate
+  /// is called.
   virtual void retire() = 0;
   /// Memory of slot_bytes(capacity) for the header and payload of the message to key.side.
   virtual std::byte* outbox(const MessageKey& key) = 0;
   /// Sends header and payload, which lie in the outbox.
   virtual void post(const MessageKey& key, const MessageHeader& header) = 0;
-  /// The message from key.side, header first, once it is in; until then nullptr. Asked again until it is.
+  /// The message from key.side, header first, once it is in; until then nullptr. Asked again until
+  /// it is.
   virtual const std::byte* arrived(const MessageKey& key) = 0;
   /// Consumed.
   virtual void recycle(const MessageKey& /*key*/) {}
   virtual std::string transport() const = 0;
-  /// Rounds for a bulk of which this rank needs `mine`. Zero: each pair of neighbours goes on for as long as it needs.
-  /// Exchanges that move all ranks at once agree on one number.
+  /// Rounds for a bulk of which this rank needs `mine`. Zero: each pair of neighbours goes on for
+  /// as long as it needs. Exchanges that move all ranks at once agree on one number.
   virtual std::size_t agree_rounds(std::size_t /*mine*/) { return 0; }
 
   [[nodiscard]] const Communicator& communicator() const { return communicator_; }
@@ -72,7 +77,9 @@ class SlotExchange : public Exchange {
   [[nodiscard]] SlotCapacity capacity() const { return capacity_; }
 
   static constexpr std::size_t index(Side side) { return static_cast<std::size_t>(side); }
-  static constexpr std::size_t index(const MessageKey& key) { return static_cast<std::size_t>(key.lane_side()); }
+  static constexpr std::size_t index(const MessageKey& key) {
+    return static_cast<std::size_t>(key.lane_side());
+  }
 
  private:
   struct Track {  // of one lane and side
@@ -94,7 +101,9 @@ class SlotExchange : public Exchange {
   };
 
   Track& track(Lane lane, Side side) { return tracks_[index(MessageKey{lane, side, 0})]; }
-  const Track& track(Lane lane, Side side) const { return tracks_[index(MessageKey{lane, side, 0})]; }
+  const Track& track(Lane lane, Side side) const {
+    return tracks_[index(MessageKey{lane, side, 0})];
+  }
   void require_neighbour(Side side, const char* what) const;
   std::byte* open_outbox(Lane lane, Side side, std::size_t bytes);
   void post_message(Lane lane, Side side, bool has_more);

@@ -7,12 +7,13 @@ namespace barchan {
 
 /// A rank's window, the same on every rank:
 ///
-///     | words: halo left slot 0, slot 1 | halo right | bulk left | bulk right |     a cache line each
-///     | halo from left: slot 0, slot 1 | halo from right: 2 slots | bulk from left: 2 | bulk from right: 2 |
+///     | words: halo left slot 0, slot 1 | halo right | bulk left | bulk right |     a cache line
+///     each | halo from left: slot 0, slot 1 | halo from right: 2 slots | bulk from left: 2 | bulk
+///     from right: 2 |
 ///
-/// "Left" is the owner's left: what a rank sends to its right lands in the left part of its right neighbour, so
-/// nothing is confused where both neighbours are the same rank. Each slot has its own word, since a neighbour may
-/// announce n+1 before this rank has looked for n.
+/// "Left" is the owner's left: what a rank sends to its right lands in the left part of its right
+/// neighbour, so nothing is confused where both neighbours are the same rank. Each slot has its own
+/// word, since a neighbour may announce n+1 before this rank has looked for n.
 struct SlotLayout {
   static constexpr std::size_t word_bytes = 64;
   static constexpr std::size_t all_words = 2 * num_lane_sides * word_bytes;

@@ -8,8 +8,8 @@
 
 namespace barchan {
 
-/// Common to the exchanges that send and receive. The tag names the lane and the receiver's side, so that nothing is
-/// confused where both neighbours are the same rank.
+/// Common to the exchanges that send and receive. The tag names the lane and the receiver's side,
+/// so that nothing is confused where both neighbours are the same rank.
 class TwoSidedExchange : public SlotExchange {
  public:
   TwoSidedExchange(const Communicator& communicator, Neighbours neighbours);
@@ -30,7 +30,9 @@ class TwoSidedExchange : public SlotExchange {
   };
   using Slots = std::array<std::array<Slot, 2>, num_lane_sides>;
 
-  [[nodiscard]] Slot& inbox(const MessageKey& key) { return inboxes_[index(key)][static_cast<std::size_t>(key.slot())]; }
+  [[nodiscard]] Slot& inbox(const MessageKey& key) {
+    return inboxes_[index(key)][static_cast<std::size_t>(key.slot())];
+  }
   [[nodiscard]] int neighbour(const MessageKey& key) const { return neighbours().rank(key.side); }
   /// Holds the length that came in against the header's.
   void require_whole(const MessageKey& key, const MPI_Status& status);

@@ -21,7 +21,8 @@ double limit_of_environment() {
   const char* end = text + std::strlen(text);
   const auto [stop, error] = std::from_chars(text, end, seconds);
   if (error != std::errc{} || stop != end || !(seconds > 0.0) || !std::isfinite(seconds)) {
-    throw InputError(std::string("BARCHAN_WAIT_LIMIT is '") + text + "'", "give a positive number of seconds");
+    throw InputError(std::string("BARCHAN_WAIT_LIMIT is '") + text + "'",
+                     "give a positive number of seconds");
   }
   return seconds;
 }
@@ -33,7 +34,9 @@ std::atomic<double>& limit() {
 
 }  // namespace
 
-double wait_limit() { return limit().load(std::memory_order_relaxed); }
+double wait_limit() {
+  return limit().load(std::memory_order_relaxed);
+}
 
 void set_wait_limit(double seconds) {
   if (!(seconds > 0.0) || !std::isfinite(seconds)) {

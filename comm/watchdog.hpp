@@ -7,8 +7,9 @@
 
 namespace barchan {
 
-/// The longest that a rank waits for one message [s]. Default 120, or the environment's BARCHAN_WAIT_LIMIT.
-/// Process-wide; set it before the run. Errors: InputError when the variable or `seconds` is not a positive number.
+/// The longest that a rank waits for one message [s]. Default 120, or the environment's
+/// BARCHAN_WAIT_LIMIT. Process-wide; set it before the run. Errors: InputError when the variable or
+/// `seconds` is not a positive number.
 double wait_limit();
 void set_wait_limit(double seconds);
 
@@ -35,10 +36,11 @@ class Watchdog {
 };
 
 /// Polls until `poll()` is true.
-/// @param describe  gives the text for a wait that never ends: which rank waits for which message of which step
+/// @param describe  gives the text for a wait that never ends: which rank waits for which message
+/// of which step
 ///                  from whom, as in "rank 2: halo message of step 17 from rank 1 (left)"
-/// Errors: RunError after wait_limit() seconds; the caller then ends all ranks (Communicator::abort), since the
-/// others may wait for this one.
+/// Errors: RunError after wait_limit() seconds; the caller then ends all ranks
+/// (Communicator::abort), since the others may wait for this one.
 template <class Poll, class Describe>
 void wait_until(Poll&& poll, Describe&& describe, double limit_seconds = wait_limit()) {
   if (poll()) return;

@@ -18,10 +18,15 @@ MPI_Info window_hints() {
   return hints;
 }
 
-[[noreturn]] void refuse(const std::string& reason) {
-  throw InputError("this MPI cannot make a window for one-sided communication between these ranks: " + reason,
-                   "with Open MPI 4 over TCP give mpirun `--mca osc pt2pt` or `--mca osc ucx`; or run with "
-                   "`--exchange isend` or `--exchange sendrecv`, which need no window");
+[[noreturn]] void refuse(const std::string& reason, Window::Memory memory) {
+  if (memory == Window::Memory::Shared) {
+    throw InputError("this MPI cannot make a window of shared memory: " + reason,
+                     "with Open MPI allow its component osc/sm; or run with `--exchange put-flag`");
+  }
+  throw InputError(
+      "this MPI cannot make a window for one-sided communication between these ranks: " + reason,
+      "with Open MPI 4 over TCP give mpirun `--mca osc pt2pt` or `--mca osc ucx`; or run with "
+      "`--exchange isend` or `--exchange sendrecv`, which need no window");
 }
 
 }  // namespace
@@ -32,8 +37,9 @@ Window::Window(const Communicator& communicator, std::size_t bytes, Memory memor
   const std::string mine = code == MPI_SUCCESS ? std::string{} : mpi_error_text(code);
   const std::string verdict = communicator.first_error(mine);
   if (!verdict.empty()) {
-    window_ = MPI_WIN_NULL;  // not freed: where it exists, others lack it, and freeing is collective
-    refuse(verdict);
+    window_ =
+        MPI_WIN_NULL;  // not freed: where it exists, others lack it, and freeing is collective
+    refuse(verdict, memory);
   }
   check(MPI_Win_set_errhandler(window_, MPI_ERRORS_RETURN), "MPI_Win_set_errhandler");
   std::memset(base_, 0, bytes_);
@@ -46,9 +52,10 @@ Window::Window(const Communicator& communicator, std::size_t bytes, Memory memor
 int Window::create(const Communicator& communicator, Memory memory) {
   MPI_Info hints = window_hints();
   const auto size = static_cast<MPI_Aint>(bytes_);
-  const int code = memory == Memory::Shared
-                       ? MPI_Win_allocate_shared(size, 1, hints, communicator.handle(), &base_, &window_)
-                       : MPI_Win_allocate(size, 1, hints, communicator.handle(), &base_, &window_);
+  const int code =
+      memory == Memory::Shared
+          ? MPI_Win_allocate_shared(size, 1, hints, communicator.handle(), &base_, &window_)
+          : MPI_Win_allocate(size, 1, hints, communicator.handle(), &base_, &window_);
   check(MPI_Info_free(&hints), "MPI_Info_free");
   return code;
 }
@@ -108,20 +115,28 @@ std::byte* Window::base_of(int rank) const {
 
 void Window::put(std::span<const std::byte> bytes, int target, std::size_t offset) const {
   const int count = mpi_count(bytes.size());
-  check(MPI_Put(bytes.data(), count, MPI_BYTE, target, static_cast<MPI_Aint>(offset), count, MPI_BYTE, window_),
+  check(MPI_Put(bytes.data(), count, MPI_BYTE, target, static_cast<MPI_Aint>(offset), count,
+                MPI_BYTE, window_),
         "MPI_Put");
 }
 
-void Window::flush(int target) const { check(MPI_Win_flush(target, window_), "MPI_Win_flush"); }
-void Window::flush_local(int target) const { check(MPI_Win_flush_local(target, window_), "MPI_Win_flush_local"); }
-void Window::sync() const { check(MPI_Win_sync(window_), "MPI_Win_sync"); }
+void Window::flush(int target) const {
+  check(MPI_Win_flush(target, window_), "MPI_Win_flush");
+}
+void Window::flush_local(int target) const {
+  check(MPI_Win_flush_local(target, window_), "MPI_Win_flush_local");
+}
+void Window::sync() const {
+  check(MPI_Win_sync(window_), "MPI_Win_sync");
+}
 
 std::string Window::component() const {
   char text[MPI_MAX_OBJECT_NAME] = {};
   int length = 0;
   check(MPI_Win_get_name(window_, text, &length), "MPI_Win_get_name");
   const std::string name(text, static_cast<std::size_t>(length));
-  if (const auto end = name.find(" window"); end != std::string::npos) return "osc/" + name.substr(0, end);
+  if (const auto end = name.find(" window"); end != std::string::npos)
+    return "osc/" + name.substr(0, end);
 #ifdef OPEN_MPI
   return "osc/sm";  // the one component of Open MPI that leaves its windows unnamed
 #else

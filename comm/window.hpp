@@ -8,15 +8,20 @@
 
 namespace barchan {
 
-/// Memory of this rank that the others may write and read: an RAII MPI_Win_allocate, of equal size on every rank.
-/// (MPI_Win_create may need process_vm_writev on a node, which containers forbid; dynamic windows are slow and buggy.)
+/// Memory of this rank that the others may write and read: an RAII MPI_Win_allocate, of equal size
+/// on every rank. (MPI_Win_create may need process_vm_writev on a node, which containers forbid;
+/// dynamic windows are slow and buggy.)
 class Window {
  public:
-  enum class Memory { Private, Shared };  ///< Shared: MPI_Win_allocate_shared, all ranks on one node
+  enum class Memory {
+    Private,
+    Shared
+  };  ///< Shared: MPI_Win_allocate_shared, all ranks on one node
 
   Window() = default;
   /// Zeroed memory, seen as zero by everybody when this returns. Collective.
-  /// Errors, the same on every rank: InputError with the remedy when this MPI cannot make the window here.
+  /// Errors, the same on every rank: InputError with the remedy when this MPI cannot make the
+  /// window here.
   Window(const Communicator& communicator, std::size_t bytes, Memory memory = Memory::Private);
   ~Window();
   Window(Window&& other) noexcept;

@@ -5,15 +5,18 @@
 namespace barchan {
 namespace {
 
-/// The reader pulls. The sender packs into its own window and puts one word, number and length, into the reader's;
-/// the reader then starts an MPI_Rget, which can be tested and completes at the data: no flush waits in a step.
+/// The reader pulls. The sender packs into its own window and puts one word, number and length,
+/// into the reader's; the reader then starts an MPI_Rget, which can be tested and completes at the
+/// data: no flush waits in a step.
 class Get final : public OneSidedExchange {
  public:
   using OneSidedExchange::OneSidedExchange;
   std::string_view name() const override { return "get"; }
 
  protected:
-  std::byte* outbox(const MessageKey& key) override { return inbox(key); }  // slots hold what goes to key.side
+  std::byte* outbox(const MessageKey& key) override {
+    return inbox(key);
+  }  // slots hold what goes to key.side
 
   void post(const MessageKey& key, const MessageHeader& header) override {
     write_header(header, outbox(key));
@@ -45,11 +48,12 @@ class Get final : public OneSidedExchange {
     }
     window().sync();
     const auto bytes = static_cast<std::size_t>(word(key) & length_mask);
-    if (bytes > capacity().of(key.lane)) throw RunError(describe(key, target(key)) + " is longer than its slot");
+    if (bytes > capacity().of(key.lane))
+      throw RunError(describe(key, target(key)) + " is longer than its slot");
     const int count = mpi_count(header_bytes + bytes);
     check(MPI_Rget(local(key), count, MPI_BYTE, target(key),
-                   static_cast<MPI_Aint>(layout().slot(SlotLayout::at_receiver(key))), count, MPI_BYTE,
-                   window().handle(), &requests_[index(key)]),
+                   static_cast<MPI_Aint>(layout().slot(SlotLayout::at_receiver(key))), count,
+                   MPI_BYTE, window().handle(), &requests_[index(key)]),
           "MPI_Rget");
     return true;
   }
@@ -58,8 +62,8 @@ class Get final : public OneSidedExchange {
     return word(key) >> length_bits == announce(key.number, 0) >> length_bits;
   }
 
-  std::array<MPI_Request, num_lane_sides> requests_{MPI_REQUEST_NULL, MPI_REQUEST_NULL, MPI_REQUEST_NULL,
-                                                    MPI_REQUEST_NULL};
+  std::array<MPI_Request, num_lane_sides> requests_{MPI_REQUEST_NULL, MPI_REQUEST_NULL,
+                                                    MPI_REQUEST_NULL, MPI_REQUEST_NULL};
 };
 
 }  // namespace

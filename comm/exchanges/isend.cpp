@@ -8,7 +8,8 @@
 namespace barchan {
 namespace {
 
-/// Two-sided, non-blocking: both slots of each side have a persistent receive posted before the message can come.
+/// Two-sided, non-blocking: both slots of each side have a persistent receive posted before the
+/// message can come.
 class Isend final : public TwoSidedExchange {
  public:
   using TwoSidedExchange::TwoSidedExchange;
@@ -57,8 +58,8 @@ class Isend final : public TwoSidedExchange {
 
   void receive(const MessageKey& key) {
     Slot& slot = inbox(key);
-    check(MPI_Recv_init(slot.memory.data(), mpi_count(slot.memory.size()), MPI_BYTE, neighbour(key), key.lane_side(),
-                        communicator().handle(), &slot.request),
+    check(MPI_Recv_init(slot.memory.data(), mpi_count(slot.memory.size()), MPI_BYTE, neighbour(key),
+                        key.lane_side(), communicator().handle(), &slot.request),
           "MPI_Recv_init");
     start(slot);
   }

@@ -10,9 +10,9 @@ namespace {
 
 /// Post, start, put, complete, test: general active-target synchronisation, one window per slot.
 ///
-/// A slot's window is exposed to the one neighbour that writes it: for messages 1 and 2 from the beginning, for n+2
-/// when n is released. So the window that A starts on for n+1 has been posted when B released n−1, which A knows from
-/// B's message n, and MPI_Win_start does not wait.
+/// A slot's window is exposed to the one neighbour that writes it: for messages 1 and 2 from the
+/// beginning, for n+2 when n is released. So the window that A starts on for n+1 has been posted
+/// when B released n−1, which A knows from B's message n, and MPI_Win_start does not wait.
 class Pscw final : public SlotExchange {
  public:
   Pscw(const Communicator& communicator, Neighbours neighbours)
@@ -76,9 +76,7 @@ class Pscw final : public SlotExchange {
 
   void recycle(const MessageKey& key) override { expose(key); }
 
-  std::string transport() const override {
-    return "one-sided " + windows_[0][0].component();
-  }
+  std::string transport() const override { return "one-sided " + windows_[0][0].component(); }
 
  private:
   template <class Act>
@@ -104,7 +102,9 @@ class Pscw final : public SlotExchange {
     check(MPI_Win_post(groups_[index(key.side)], 0, window(key).handle()), "MPI_Win_post");
   }
 
-  Window& window(const MessageKey& key) { return windows_[index(key)][static_cast<std::size_t>(key.slot())]; }
+  Window& window(const MessageKey& key) {
+    return windows_[index(key)][static_cast<std::size_t>(key.slot())];
+  }
 
   std::array<std::array<Window, 2>, num_lane_sides> windows_;
   std::array<std::vector<std::byte>, num_lane_sides> outboxes_;

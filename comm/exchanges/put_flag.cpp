@@ -15,7 +15,8 @@ class PutFlag final : public OneSidedExchange {
   void post(const MessageKey& key, const MessageHeader& header) override {
     std::byte* message = outbox(key);
     write_header(header, message);
-    window().put({message, header_bytes + header.bytes}, target(key), layout().slot(SlotLayout::at_receiver(key)));
+    window().put({message, header_bytes + header.bytes}, target(key),
+                 layout().slot(SlotLayout::at_receiver(key)));
     window().flush(target(key));
     put_word(key, key.number);
     window().flush(target(key));
@@ -33,7 +34,8 @@ class PutFlag final : public OneSidedExchange {
 
 }  // namespace
 
-std::unique_ptr<SlotExchange> make_put_flag(const Communicator& communicator, Neighbours neighbours) {
+std::unique_ptr<SlotExchange> make_put_flag(const Communicator& communicator,
+                                            Neighbours neighbours) {
   return std::make_unique<PutFlag>(communicator, neighbours);
 }
 

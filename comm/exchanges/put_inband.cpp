@@ -9,12 +9,14 @@
 namespace barchan {
 namespace {
 
-/// The message tells itself that it is whole: its number before and after the payload, and a checksum. One put, no
-/// remote flush, so over a network it takes one way instead of two round trips.
+/// The message tells itself that it is whole: its number before and after the payload, and a
+/// checksum. One put, no remote flush, so over a network it takes one way instead of two round
+/// trips.
 ///
-/// MPI does not say in which order the bytes of a put land, so the reader believes a message only when header and
-/// trailer carry its number and the checksum, seeded with the number, agrees; else it looks again.
-/// MPI_Win_flush_local lets small puts leave at all (osc/pt2pt keeps them back), and frees the outbox.
+/// MPI does not say in which order the bytes of a put land, so the reader believes a message only
+/// when header and trailer carry its number and the checksum, seeded with the number, agrees; else
+/// it looks again. MPI_Win_flush_local lets small puts leave at all (osc/pt2pt keeps them back),
+/// and frees the outbox.
 class PutInband final : public OneSidedExchange {
  public:
   using OneSidedExchange::OneSidedExchange;
@@ -28,7 +30,8 @@ class PutInband final : public OneSidedExchange {
     write_header(sealed, message);
     const std::size_t end = trailer_offset(header.bytes);
     std::memcpy(message + end, &key.number, sizeof(key.number));
-    window().put({message, end + sizeof(key.number)}, target(key), layout().slot(SlotLayout::at_receiver(key)));
+    window().put({message, end + sizeof(key.number)}, target(key),
+                 layout().slot(SlotLayout::at_receiver(key)));
     window().flush_local(target(key));
   }
 
@@ -45,25 +48,30 @@ class PutInband final : public OneSidedExchange {
 
   // Covers the header too: its fields may land late as well.
   static std::uint64_t checksum(const std::byte* payload, MessageHeader header) {
-    header.checksum = XXH3_64bits_withSeed(payload, static_cast<std::size_t>(header.bytes), header.number);
+    header.checksum =
+        XXH3_64bits_withSeed(payload, static_cast<std::size_t>(header.bytes), header.number);
     return XXH3_64bits(&header, sizeof header);
   }
 
   [[nodiscard]] bool is_whole(const MessageKey& key) const {
     std::byte* message = inbox(key);
     const auto number_at = [message](std::size_t offset) {
-      return std::atomic_ref(*reinterpret_cast<std::uint64_t*>(message + offset)).load(std::memory_order_acquire);
+      return std::atomic_ref(*reinterpret_cast<std::uint64_t*>(message + offset))
+          .load(std::memory_order_acquire);
     };
     if (number_at(0) != key.number) return false;
     const MessageHeader header = read_header(message);
-    if (header.bytes > capacity().of(key.lane) || number_at(trailer_offset(header.bytes)) != key.number) return false;
+    if (header.bytes > capacity().of(key.lane) ||
+        number_at(trailer_offset(header.bytes)) != key.number)
+      return false;
     return header.checksum == checksum(message + header_bytes, header);
   }
 };
 
 }  // namespace
 
-std::unique_ptr<SlotExchange> make_put_inband(const Communicator& communicator, Neighbours neighbours) {
+std::unique_ptr<SlotExchange> make_put_inband(const Communicator& communicator,
+                                              Neighbours neighbours) {
   return std::make_unique<PutInband>(communicator, neighbours);
 }
 

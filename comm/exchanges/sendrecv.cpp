@@ -6,8 +6,9 @@
 namespace barchan {
 namespace {
 
-/// Two-sided, blocking, as in the published code: a message that is looked for is waited for, and its receive is posted
-/// only then. Sends start buffered, so no order of ranks and sides can deadlock. Hides nothing; the yardstick.
+/// Two-sided, blocking, as in the published code: a message that is looked for is waited for, and
+/// its receive is posted only then. Sends start buffered, so no order of ranks and sides can
+/// deadlock. Hides nothing; the yardstick.
 class Sendrecv final : public TwoSidedExchange {
  public:
   using TwoSidedExchange::TwoSidedExchange;
@@ -18,8 +19,8 @@ class Sendrecv final : public TwoSidedExchange {
   // A blocking receive in all but one thing: a message that never comes is reported.
   const std::byte* arrived(const MessageKey& key) override {
     Slot& slot = inbox(key);
-    check(MPI_Irecv(slot.memory.data(), mpi_count(slot.memory.size()), MPI_BYTE, neighbour(key), key.lane_side(),
-                    communicator().handle(), &slot.request),
+    check(MPI_Irecv(slot.memory.data(), mpi_count(slot.memory.size()), MPI_BYTE, neighbour(key),
+                    key.lane_side(), communicator().handle(), &slot.request),
           "MPI_Irecv");
     MPI_Status status;
     wait_until(
@@ -28,7 +29,10 @@ class Sendrecv final : public TwoSidedExchange {
           check(MPI_Test(&slot.request, &is_there, &status), "MPI_Test");
           return is_there != 0;
         },
-        [&] { return "rank " + std::to_string(communicator().rank()) + ": " + describe(key, neighbour(key)); });
+        [&] {
+          return "rank " + std::to_string(communicator().rank()) + ": " +
+                 describe(key, neighbour(key));
+        });
     require_whole(key, status);
     return slot.memory.data();
   }
@@ -36,7 +40,8 @@ class Sendrecv final : public TwoSidedExchange {
 
 }  // namespace
 
-std::unique_ptr<SlotExchange> make_sendrecv(const Communicator& communicator, Neighbours neighbours) {
+std::unique_ptr<SlotExchange> make_sendrecv(const Communicator& communicator,
+                                            Neighbours neighbours) {
   return std::make_unique<Sendrecv>(communicator, neighbours);
 }
 

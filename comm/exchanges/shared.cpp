@@ -8,8 +8,9 @@
 namespace barchan {
 namespace {
 
-/// Memory that the ranks of a node share: the sender packs into its own slot and stores the number into its own word
-/// (release); the reader looks at that word (acquire) and reads the slot in place. No copy and no MPI call in a step.
+/// Memory that the ranks of a node share: the sender packs into its own slot and stores the number
+/// into its own word (release); the reader looks at that word (acquire) and reads the slot in
+/// place. No copy and no MPI call in a step.
 class SharedMemory final : public SlotExchange {
  public:
   using SlotExchange::SlotExchange;
@@ -41,7 +42,8 @@ class SharedMemory final : public SlotExchange {
   }
 
   const std::byte* arrived(const MessageKey& key) override {
-    const MessageKey at_sender = SlotLayout::at_receiver(key);  // the sender's name for it: the other side
+    const MessageKey at_sender =
+        SlotLayout::at_receiver(key);  // the sender's name for it: the other side
     std::byte* sender = theirs_[index(key.side)];
     if (word(sender, at_sender).load(std::memory_order_acquire) < key.number) return nullptr;
     return sender + layout_.slot(at_sender);
@@ -61,7 +63,8 @@ class SharedMemory final : public SlotExchange {
 
 }  // namespace
 
-std::unique_ptr<SlotExchange> make_shared_memory(const Communicator& communicator, Neighbours neighbours) {
+std::unique_ptr<SlotExchange> make_shared_memory(const Communicator& communicator,
+                                                 Neighbours neighbours) {
   return std::make_unique<SharedMemory>(communicator, neighbours);
 }
 
