@@ -15,7 +15,7 @@ is() {
   [ "$1" = "$2" ] || { echo "      got '$1', expected '$2'"; return 1; }
 }
 
-in_lab() { ./netlab --mpi none "$@"; }
+in_lab() { timeout 30 ./netlab --mpi none "$@"; }
 
 rtt_is_twice_the_delay() {  # the hosts' own share, TCP/IP stack and wake-ups, is up to 250 us when others compute
   local us=$1 median
