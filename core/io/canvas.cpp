@@ -98,13 +98,14 @@ void Canvas::add_beside(int x, int y, const Colour& colour, float coverage) {
   pixel->coverage += coverage;
 }
 
-void Canvas::put_on_white() {
+void Canvas::put_on_white(float gain) {
   for (Pixel& pixel : pixels_) {
-    const float white = std::max(0.0F, 1.0F - pixel.coverage);
-    const float scale = pixel.coverage > 1.0F ? 1.0F / pixel.coverage : 1.0F;
+    const float covered = std::min(1.0F, gain * pixel.coverage);
+    const float white = 1.0F - covered;
+    const float scale = pixel.coverage > 0.0F ? covered / pixel.coverage : 0.0F;
     pixel.light = {pixel.light.r * scale + white, pixel.light.g * scale + white,
                    pixel.light.b * scale + white};
-    pixel.coverage = 1.0F;
+    pixel.coverage = covered;
   }
 }
 
@@ -113,24 +114,24 @@ void Canvas::over(int x, int y, const Colour& colour, float coverage) {
     pixel->light = mix(pixel->light, colour, std::clamp(coverage, 0.0F, 1.0F));
 }
 
-void Canvas::line(double x0, double y0, double x1, double y1, double thickness,
-                  const Colour& colour) {
-  const double dx = x1 - x0, dy = y1 - y0;
+void Canvas::line(const PixelPoint& from, const PixelPoint& to, const Stroke& stroke) {
+  const double dx = to.x - from.x, dy = to.y - from.y;
   const double length2 = dx * dx + dy * dy;
-  const double reach = 0.5 * thickness + 1.0;
+  const double reach = 0.5 * stroke.thickness + 1.0;
   const auto first = [reach](double a, double b) {
-    return static_cast<int>(std::floor(std::min(a, b) - reach));
+    return static_cast<int>(std::clamp(std::floor(std::min(a, b) - reach), 0.0, 1e6));
   };
-  const auto last = [reach](double a, double b) {
-    return static_cast<int>(std::ceil(std::max(a, b) + reach));
+  const auto last = [reach](double a, double b, int end) {
+    return static_cast<int>(std::clamp(std::ceil(std::max(a, b) + reach), 0.0, 1.0 * end));
   };
-  for (int y = std::max(0, first(y0, y1)); y < std::min(height_, last(y0, y1)); ++y) {
-    for (int x = std::max(0, first(x0, x1)); x < std::min(width_, last(x0, x1)); ++x) {
-      const double px = x + 0.5 - x0, py = y + 0.5 - y0;
+  for (int y = first(from.y, to.y); y < last(from.y, to.y, height_); ++y) {
+    for (int x = first(from.x, to.x); x < last(from.x, to.x, width_); ++x) {
+      const double px = x + 0.5 - from.x, py = y + 0.5 - from.y;
       const double t = length2 > 0.0 ? std::clamp((px * dx + py * dy) / length2, 0.0, 1.0) : 0.0;
       const double distance = std::hypot(px - t * dx, py - t * dy);
-      over(x, y, colour,
-           static_cast<float>(std::clamp(0.5 * thickness + 0.5 - distance, 0.0, 1.0)));
+      const double share = std::clamp(0.5 * stroke.thickness + 0.5 - distance, 0.0, 1.0);
+      const float seen = stroke.is_behind ? 1.0F - coverage(x, y) : 1.0F;
+      over(x, y, stroke.colour, static_cast<float>(share) * seen);
     }
   }
 }

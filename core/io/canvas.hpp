@@ -20,6 +20,17 @@ struct Colour {
 
 [[nodiscard]] Colour mix(const Colour& a, const Colour& b, float share_of_b);
 
+struct PixelPoint {
+  double x = 0.0;
+  double y = 0.0;
+};
+
+struct Stroke {
+  double thickness = 1.0;  ///< [pixels]
+  Colour colour;
+  bool is_behind = false;  ///< seen only where nothing was added
+};
+
 /// Perceptual colour map: even steps of lightness from deep blue over red to pale sand (OKLab).
 /// @param t  0 to 1, clamped
 [[nodiscard]] Colour colour_map(double t);
@@ -43,10 +54,11 @@ class Canvas {
   void add_beside(int x, int y, const Colour& colour, float coverage);
   [[nodiscard]] float coverage(int x, int y) const;
 
-  /// Fills the rest with white; from here on only over() draws.
-  void put_on_white();
+  /// Fills the rest with white; from here on only over() draws. `gain` above 1 closes the gaps
+  /// between things that are smaller than a pixel, whose colours would pale otherwise.
+  void put_on_white(float gain);
   void over(int x, int y, const Colour& colour, float coverage);
-  void line(double x0, double y0, double x1, double y1, double thickness, const Colour& colour);
+  void line(const PixelPoint& from, const PixelPoint& to, const Stroke& stroke);
   void rectangle(int x0, int y0, int x1, int y1, const Colour& colour);
   /// Text with its top left at (x, y); a character is 6·scale wide.
   void text(int x, int y, std::string_view text, int scale, const Colour& colour);

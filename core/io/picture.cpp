@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include <barchan/core/io/canvas.hpp>
+#include <barchan/core/io/circles.hpp>
 #include <barchan/core/io/font.hpp>
 #include <barchan/core/io/picture.hpp>
 
@@ -17,6 +19,9 @@ constexpr int kBarHeight = 16;
 constexpr int kTextScale = 2;
 constexpr int kTextHeight = kGlyphHeight * kTextScale;
 constexpr double kTallest = 1.5;  ///< height of the scene over the image's width
+
+constexpr double kTiny = 1.5;  ///< radius [pixels] below which gaps between particles are closed
+constexpr float kTinyGain = 1.5F;  ///< more than one over the solid fraction of a packing
 
 const Colour kInk = Colour::from_hex(0x3a3f47);
 const Colour kFrame = Colour::from_hex(0xb4b9c0);
@@ -60,8 +65,10 @@ Range content_range(const PictureInput& input, int axis) {
     range.lo = std::min({range.lo, line.from[axis], line.to[axis]});
     range.hi = std::max({range.hi, line.from[axis], line.to[axis]});
   }
-  if (range.lo > range.hi) range = {input.lo[axis], input.hi[axis]};
-  return range;
+  if (!(range.lo <= range.hi)) range = {input.lo[axis], input.hi[axis]};
+  // What has flown away (or is not a number) must not shrink the rest to nothing.
+  const double half = 0.5 * (input.hi[axis] - input.lo[axis]);
+  return {std::max(range.lo, input.lo[axis] - half), std::min(range.hi, input.hi[axis] + half)};
 }
 
 View make_view(const PictureInput& input, int top) {
@@ -80,110 +87,51 @@ View make_view(const PictureInput& input, int top) {
 
 Range value_range(const PictureInput& input) {
   if (input.values.empty() || input.values_are_kinds) return {0.0, 1.0};
-  const auto [lo, hi] = std::minmax_element(input.values.begin(), input.values.end());
-  return {*lo, *hi};
+  Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+  for (const double value : input.values) {
+    if (!std::isfinite(value)) continue;
+    range = {std::min(range.lo, value), std::max(range.hi, value)};
+  }
+  if (!(range.lo <= range.hi)) return {0.0, 1.0};
+  if (range.lo >= 0.0 && range.lo < 0.05 * range.hi) range.lo = 0.0;
+  return range;
 }
 
 Colour colour_of(const PictureInput& input, std::size_t i, const Range& range) {
   if (input.values.empty()) return kind_colour(0);
   const double value = input.values[i];
-  if (input.values_are_kinds) return kind_colour(static_cast<int>(value));
+  if (input.values_are_kinds)
+    return kind_colour(std::abs(value) < 1e9 ? static_cast<int>(value) : 0);
   return colour_map(range.hi > range.lo ? (value - range.lo) / (range.hi - range.lo) : 0.0);
 }
 
-/// Coverage of a pixel whose centre is at `distance` from the centre of a circle [pixels].
-float circle_coverage(double radius, double distance) {
-  return static_cast<float>(std::clamp(radius + 0.5 - distance, 0.0, 1.0));
-}
-
-struct Circle {
-  double x, y, radius;  ///< [pixels]
-};
-
-template <class Use>
-void for_each_pixel(const Canvas& canvas, const Circle& circle, Use use) {
-  const double reach = circle.radius + 0.5;
-  const int first_x = std::max(0, static_cast<int>(std::floor(circle.x - reach)));
-  const int last_x = std::min(canvas.width() - 1, static_cast<int>(std::floor(circle.x + reach)));
-  const int first_y = std::max(0, static_cast<int>(std::floor(circle.y - reach)));
-  const int last_y = std::min(canvas.height() - 1, static_cast<int>(std::floor(circle.y + reach)));
-  for (int y = first_y; y <= last_y; ++y) {
-    for (int x = first_x; x <= last_x; ++x) {
-      const double dx = x + 0.5 - circle.x, dy = y + 0.5 - circle.y;
-      use(x, y, dx, dy);
-    }
+void draw_disks(Canvas& canvas, const PictureInput& input, const View& view, const Range& range) {
+  for (std::size_t i = 0; i < input.positions.size(); ++i) {
+    const Vec3& p = input.positions[i];
+    draw_disk(canvas, {view.x(p), view.y(p), input.radii[i] * view.scale},
+              colour_of(input, i, range));
   }
 }
 
-/// Circles of less than a pixel spread their area over the four pixels they lie among.
-void splat(Canvas& canvas, const Circle& circle, const Colour& colour) {
-  const double area = 3.14159265 * circle.radius * circle.radius;
-  const double side = std::max(1.0, 2.0 * circle.radius);
-  const auto share = [side](double center, int pixel) {
-    return std::max(0.0, std::min(center + 0.5 * side, pixel + 1.0) -
-                             std::max(center - 0.5 * side, 1.0 * pixel)) /
-           side;
-  };
-  for_each_pixel(canvas, {circle.x, circle.y, 0.5 * side}, [&](int x, int y, double, double) {
-    canvas.add_beside(x, y, colour,
-                      static_cast<float>(area * share(circle.x, x) * share(circle.y, y)));
-  });
-}
-
-void draw_disk(Canvas& canvas, const Circle& circle, const Colour& colour) {
-  if (circle.radius < 1.0) return splat(canvas, circle, colour);
-  const double rim = circle.radius > 4.0 ? std::min(2.0, 0.12 * circle.radius) : 0.0;
-  const Colour edge = colour.scaled(0.45F);
-  for_each_pixel(canvas, circle, [&](int x, int y, double dx, double dy) {
-    const double distance = std::sqrt(dx * dx + dy * dy);
-    const float coverage = circle_coverage(circle.radius, distance);
-    if (coverage <= 0.0F) return;
-    const float inner = rim > 0.0 ? circle_coverage(circle.radius - rim, distance) : 1.0F;
-    canvas.add_beside(x, y, mix(edge, colour, inner), coverage);
-  });
-}
-
-/// A ball lit from the upper left, in front of all that follows.
-void draw_ball(Canvas& canvas, const Circle& circle, const Colour& colour) {
-  const double radius = std::max(circle.radius, 0.5);
-  for_each_pixel(canvas, {circle.x, circle.y, radius}, [&](int x, int y, double dx, double dy) {
-    if (canvas.coverage(x, y) > 0.99F) return;
-    const double square = dx * dx + dy * dy;
-    const float coverage = circle_coverage(radius, std::sqrt(square));
-    if (coverage <= 0.0F) return;
-    const double depth = std::sqrt(std::max(0.0, radius * radius - square));
-    const double light = (-0.42 * dx - 0.55 * dy + 0.72 * depth) / radius;
-    const double shade = radius < 1.5 ? 0.85 : 0.22 + 0.78 * std::max(0.0, light);
-    const double gloss = radius < 4.0 ? 0.0 : 0.25 * std::pow(std::max(0.0, light), 30.0);
-    canvas.add_behind(x, y,
-                      mix(colour.scaled(static_cast<float>(shade)), {1.0F, 1.0F, 1.0F},
-                          static_cast<float>(gloss)),
-                      coverage);
-  });
-}
-
-void draw_particles(Canvas& canvas, const PictureInput& input, const View& view,
-                    const Range& range) {
-  std::vector<std::uint32_t> order(input.positions.size());
-  std::iota(order.begin(), order.end(), 0U);
-  if (input.dimension == 3) {  // nearest first: least y
-    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-      const double ya = input.positions[a].y() - input.radii[a],
-                   yb = input.positions[b].y() - input.radii[b];
-      return ya != yb ? ya < yb : a < b;
-    });
+void draw_balls(Canvas& canvas, const PictureInput& input, const View& view, const Range& range) {
+  std::vector<std::pair<double, std::uint32_t>> nearest_first;
+  nearest_first.reserve(input.positions.size());
+  for (std::uint32_t i = 0; i < input.positions.size(); ++i) {
+    nearest_first.push_back({input.positions[i].y() - input.radii[i], i});
   }
+  std::sort(nearest_first.begin(), nearest_first.end());
   const double depth = input.hi.y() - input.lo.y();
-  for (const std::uint32_t i : order) {
+  const std::size_t between_updates = std::max<std::size_t>(20000, nearest_first.size() / 40);
+  CoveredTiles covered(canvas);
+  for (std::size_t n = 0; n < nearest_first.size(); ++n) {
+    if (n > 0 && n % between_updates == 0) covered.update(canvas);
+    const std::uint32_t i = nearest_first[n].second;
     const Vec3& p = input.positions[i];
     const Circle circle{view.x(p), view.y(p), input.radii[i] * view.scale};
+    if (covered.hides(circle)) continue;
+    const double far = depth > 0.0 ? std::clamp((p.y() - input.lo.y()) / depth, 0.0, 1.0) : 0.0;
     const Colour colour = colour_of(input, i, range);
-    if (input.dimension == 2) {
-      draw_disk(canvas, circle, colour);
-    } else {
-      const double far = depth > 0.0 ? std::clamp((p.y() - input.lo.y()) / depth, 0.0, 1.0) : 0.0;
-      draw_ball(canvas, circle, colour.scaled(static_cast<float>(1.0 - 0.55 * far)));
-    }
+    draw_ball(canvas, circle, colour.scaled(static_cast<float>(1.0 - 0.55 * far)));
   }
 }
 
@@ -193,12 +141,16 @@ void draw_lines(Canvas& canvas, const PictureInput& input, const View& view) {
   a[view.up] = std::max(input.lo[view.up], view.upward.lo);
   b.x() = std::min(input.hi.x(), view.across.hi);
   b[view.up] = std::min(input.hi[view.up], view.upward.hi);
-  canvas.line(view.x(a), view.y(a), view.x(b), view.y(a), 1.0, kFrame);
-  canvas.line(view.x(a), view.y(b), view.x(b), view.y(b), 1.0, kFrame);
-  canvas.line(view.x(a), view.y(a), view.x(a), view.y(b), 1.0, kFrame);
-  canvas.line(view.x(b), view.y(a), view.x(b), view.y(b), 1.0, kFrame);
+  const PixelPoint corners[] = {{view.x(a), view.y(a)},
+                                {view.x(b), view.y(a)},
+                                {view.x(b), view.y(b)},
+                                {view.x(a), view.y(b)}};
+  for (std::size_t k = 0; k < 4; ++k) {
+    canvas.line(corners[k], corners[(k + 1) % 4], {1.0, kFrame, true});
+  }
   for (const PictureLine& line : input.lines) {
-    canvas.line(view.x(line.from), view.y(line.from), view.x(line.to), view.y(line.to), 3.0, kInk);
+    canvas.line({view.x(line.from), view.y(line.from)}, {view.x(line.to), view.y(line.to)},
+                {3.0, kInk, false});
   }
 }
 
@@ -245,8 +197,14 @@ void write_picture(const std::string& path, const PictureInput& input) {
   Canvas canvas(input.width, scene_end + foot + kMargin);
 
   const Range range = value_range(input);
-  draw_particles(canvas, input, view, range);
-  canvas.put_on_white();
+  if (input.dimension == 2) {
+    draw_disks(canvas, input, view, range);
+  } else {
+    draw_balls(canvas, input, view, range);
+  }
+  double mean_radius = 0.0;
+  for (const double radius : input.radii) mean_radius += radius / static_cast<double>(count);
+  canvas.put_on_white(mean_radius * view.scale < kTiny ? kTinyGain : 1.0F);
   draw_lines(canvas, input, view);
   canvas.text(kMargin, kMargin, input.title, kTextScale, kInk);
   if (has_scale) draw_scale(canvas, input, range, scene_end);
