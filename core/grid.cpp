@@ -16,6 +16,7 @@ Grid<Dim>::Grid(const Domain& domain, double cutoff, std::int64_t num_particles)
   for (int k = 0; k < Dim; ++k) {
     const int a = axis(k);
     const double length = domain.hi[a] - domain.lo[a];
+    end_[a] = domain.hi[a];
     origin_[a] = lo_[static_cast<std::size_t>(k)] = domain.lo[a];
     periodic_[static_cast<std::size_t>(k)] = domain.periodic[static_cast<std::size_t>(a)];
     cells_[static_cast<std::size_t>(k)] = static_cast<int>(std::clamp(std::floor(length / cutoff), 1.0, 1e6));

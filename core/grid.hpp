@@ -43,6 +43,13 @@ class Grid {
     for (int k = 1; k < Dim; ++k) key = key * cells(k) + coordinate(x, k);
     return key;
   }
+  /// Whether a position is within the domain; along periodic axes it always is.
+  [[nodiscard]] bool contains(const double* x) const {
+    for (int a = 0; a < Dim; ++a) {
+      if (box_.inverse[a] == 0.0 && (x[a] < origin_[a] || x[a] > end_[a])) return false;
+    }
+    return true;
+  }
   /// Brings a position back into the periodic box.
   void wrap(double* x) const {
     for (int a = 0; a < Dim; ++a) {
@@ -56,7 +63,7 @@ class Grid {
   std::array<int, Dim> axis_{}, cells_{};
   std::array<bool, Dim> periodic_{};
   std::array<double, Dim> lo_{}, inverse_{};
-  double origin_[3] = {};
+  double origin_[3] = {}, end_[3] = {};
   PeriodicBox box_;
   std::int64_t slab_size_ = 1;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -36,7 +37,6 @@ struct StepFrame {
   double kick = 0.0;  ///< dt, or dt/2 in the first step
   double gravity[3] = {};
   double local_damping = 0.0;
-  bool sum_walls = false;  ///< somebody reads the wall forces of this step
 };
 
 /// One side of a lane: the cut, the owned rows along it, and the pairs across it.
@@ -64,6 +64,7 @@ struct Measures {
 struct Travel {
   double distance2 = 0.0;  ///< largest squared displacement [m²]
   double speed2 = 0.0;     ///< largest squared speed [m²/s²]
+  std::int64_t outside = 0;  ///< id of a particle that is out of the domain, the largest; 0: none
 };
 
 /// A lane is to a thread what a strip is to a rank: slabs [slab_begin, slab_end) with their particles, pairs and
@@ -130,11 +131,14 @@ class Lane {
   [[nodiscard]] const BondSet<Dim>& bonds() const { return bonds_; }
   WallContacts<Dim>& wall_contacts() { return walls_; }
   [[nodiscard]] const WallContacts<Dim>& wall_contacts() const { return walls_; }
+  /// Force of the last step on walls that move, and their work since the start.
   std::vector<WallSums>& wall_sums() { return wall_sums_; }
+  [[nodiscard]] std::vector<WallSums> measure_walls() const;
   Band& band(Side side) { return bands_[side]; }
   [[nodiscard]] const Band& band(Side side) const { return bands_[side]; }
   [[nodiscard]] const PairList& list(ListName name) const { return lists_[name]; }
   PairList& list(ListName name) { return lists_[name]; }
+  [[nodiscard]] std::int64_t num_leaving() const { return std::count_if(goes_.begin(), goes_.end(), [](auto g) { return g != 0; }); }
   [[nodiscard]] int slab_begin() const { return slab_begin_; }
   [[nodiscard]] int slab_end() const { return slab_end_; }
   [[nodiscard]] std::int64_t num_pairs() const;

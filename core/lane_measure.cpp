@@ -68,7 +68,7 @@ void measure_pairs(const Lane<Dim>& lane, const PairList& list, Measures& m) {
 }
 
 template <int Dim>
-void measure_walls(const Lane<Dim>& lane, Measures& m) {
+void measure_wall_contacts(const Lane<Dim>& lane, Measures& m) {
   const auto& store = lane.store();
   const auto& world = lane.world();
   for (const WallContact<Dim>& c : lane.wall_contacts().list()) {
@@ -93,7 +93,7 @@ Measures Lane<Dim>::measure(const Vec3& gravity) const {
   measure_motion(store_, gravity, m);
   for (const PairList& list : lists_) measure_pairs(*this, list, m);
   if (bands_[Left].exists) measure_pairs(*this, bands_[Left].across, m);  // a pair across a cut counts on its right
-  measure_walls(*this, m);
+  measure_wall_contacts(*this, m);
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.bonds().size()); ++b) {
     // A bond across a cut counts on its right, too.
     const std::int32_t last = std::max(bonds_.end_a(b), bonds_.end_b(b));
@@ -103,6 +103,14 @@ Measures Lane<Dim>::measure(const Vec3& gravity) const {
   }
   m.broken_bonds = bonds_.num_broken();
   return m;
+}
+
+template <int Dim>
+std::vector<WallSums> Lane<Dim>::measure_walls() const {
+  std::vector<WallSums> sums(world_->walls.size());
+  for (std::size_t w = 0; w < wall_sums_.size(); ++w) sums[w].work = wall_sums_[w].work;
+  walls_.measure(store_, {world_->wall_specs, world_->walls, &world_->laws, world_->dt}, sums);
+  return sums;
 }
 
 template <int Dim>
@@ -119,8 +127,10 @@ Travel Lane<Dim>::travel() const {
       d2 += d * d;
       v2 += v[c] * v[c];
     }
-    t.distance2 = std::max(t.distance2, d2);
-    t.speed2 = std::max(t.speed2, v2);
+    // Written so that NaN wins.
+    if (!(d2 <= t.distance2)) t.distance2 = d2;
+    if (!(v2 <= t.speed2)) t.speed2 = v2;
+    if (!world_->grid.contains(x)) t.outside = std::max(t.outside, store_.id[static_cast<std::size_t>(i)]);
   }
   return t;
 }
@@ -139,6 +149,8 @@ std::uint64_t Lane<Dim>::digest() const {
 
 template Measures Lane<2>::measure(const Vec3&) const;
 template Measures Lane<3>::measure(const Vec3&) const;
+template std::vector<WallSums> Lane<2>::measure_walls() const;
+template std::vector<WallSums> Lane<3>::measure_walls() const;
 template Travel Lane<2>::travel() const;
 template Travel Lane<3>::travel() const;
 template std::uint64_t Lane<2>::digest() const;

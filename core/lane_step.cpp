@@ -34,7 +34,10 @@ void Lane<Dim>::begin_step(const StepFrame& frame) {
   frame_ = frame;
   if (world_->search == ContactSearchKind::AllPairs) research_owned();
   rows_done_ = bands_[Left].exists ? bands_[Left].rows.end : 0;
-  if (frame_.sum_walls) wall_sums_.assign(world_->walls.size(), {});
+  wall_sums_.resize(world_->walls.size());
+  for (WallSums& sums : wall_sums_) {
+    for (ExactSum& force : sums.force) force = {};
+  }
   if (!bonds_.empty()) compute_bonds(BondSet<Dim>::Owned);
 }
 
@@ -61,8 +64,7 @@ template <int Dim>
 void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extras) {
   if (has_extras || !store_.external.empty()) {
     bonds_.add_to_rows(store_, begin, end);
-    const std::span<WallSums> sums = frame_.sum_walls ? std::span<WallSums>(wall_sums_) : std::span<WallSums>();
-    walls_.add_to_rows(store_, {world_->wall_specs, world_->walls, &world_->laws, world_->dt, sums}, begin, end);
+    walls_.add_to_rows(store_, {world_->wall_specs, world_->walls, &world_->laws, world_->dt}, wall_sums_, begin, end);
     if (!store_.external.empty()) {
       const auto from = static_cast<std::size_t>(begin) * L::kForce, to = static_cast<std::size_t>(end) * L::kForce;
       for (std::size_t c = from; c < to; ++c) store_.force[c] += store_.external[c];

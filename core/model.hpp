@@ -83,7 +83,7 @@ struct WallSpec {
   double width = 0.0;            ///< plate: along the in-plane axis [m] (2D perpendicular to normal)
   double depth = 0.0;            ///< plate in 3D: the other in-plane extent [m]
   bool is_loaded = false;        ///< plate moved along its normal by load, contact forces and damping
-  double load = 0.0;             ///< service load q pushing against the normal [N/m²] (2D: [N/m] of width per unit depth)
+  double load = 0.0;             ///< service load q along the normal, towards the particles [N/m²] (2D: [N/m] of width per unit depth)
   double mass = 0.0;             ///< of a loaded plate [kg]
   double damping = 0.0;          ///< viscous, on a loaded plate [N·s/m]
   int from_stage = 0;            ///< absent before this stage
@@ -94,7 +94,7 @@ struct Stage {
   std::string name;
   double local_damping = 0.0;  ///< Cundall's alpha: force reduced by alpha·|F|·sign(v), per component
   double max_time = std::numeric_limits<double>::infinity();  ///< length of the stage [s]
-  double kinetic_ratio = 0.0;  ///< end when kinetic energy / (sum |F|·r over particles) is below; 0 = never
+  double kinetic_ratio = 0.0;  ///< end when kinetic over elastic energy falls below; 0 = never
 };
 
 struct TimeSpec {

@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <barchan/core/contact_law.hpp>
-#include <barchan/core/simd/scalar.hpp>
-
 namespace barchan {
 namespace {
 
@@ -51,17 +48,24 @@ void in_plane_axes(const Vec3& n, Vec3& along, Vec3& across) {
   across = Vec3(n[1] * along[2] - n[2] * along[1], n[2] * along[0] - n[0] * along[2], n[0] * along[1] - n[1] * along[0]);
 }
 
-void add_to_sums(WallSums& sums, const WallState& state, const Vec3& at, const Vec3& force_on_wall) {
-  const Vec3 arm = at - state.point;
-  const Vec3& f = force_on_wall;
-  const double torque[3] = {arm[1] * f[2] - arm[2] * f[1], arm[2] * f[0] - arm[0] * f[2], arm[0] * f[1] - arm[1] * f[0]};
+}  // namespace
+
+void WallSums::add(const WallSums& other) {
   for (int c = 0; c < 3; ++c) {
-    sums.force[c].add(f[c]);
-    sums.torque[c].add(torque[c]);
+    force[c].add(other.force[c]);
+    torque[c].add(other.torque[c]);
   }
+  work.add(other.work);
 }
 
-}  // namespace
+void WallSums::add_force(const WallState& state, const Vec3& at, const Vec3& f) {
+  const Vec3 arm = at - state.point;
+  const double about[3] = {arm[1] * f[2] - arm[2] * f[1], arm[2] * f[0] - arm[0] * f[2], arm[0] * f[1] - arm[1] * f[0]};
+  for (int c = 0; c < 3; ++c) {
+    force[c].add(f[c]);
+    torque[c].add(about[c]);
+  }
+}
 
 template <int Dim>
 double WallContacts<Dim>::nearest(const WallSpec& spec, const WallState& state, const double* x, double* to_wall) {
@@ -105,33 +109,56 @@ void WallContacts<Dim>::search(const ParticleStore<Dim>& store, std::span<const 
 }
 
 template <int Dim>
-void WallContacts<Dim>::add_to_rows(ParticleStore<Dim>& store, const Frame& frame, std::int32_t begin, std::int32_t end) {
+typename WallContacts<Dim>::Push WallContacts<Dim>::push(const ParticleStore<Dim>& store, const Frame& frame,
+                                                         WallContact<Dim>& contact) {
+  const auto w = static_cast<std::size_t>(contact.wall);
+  const WallSpec& spec = frame.specs[w];
+  double d[3] = {};
+  nearest(spec, frame.states[w], store.x(contact.row), d);
+  const auto pair = pair_with_wall(store, contact.row, d, frame.states[w].velocity);
+  const auto type = store.type[static_cast<std::size_t>(contact.row)];
+  const auto law = constants_of(*frame.laws, frame.laws->code(spec.material, type));
+  Push p{frame.laws->uses_mass() ? force_of<Dim, true>(law, pair, frame.dt, contact.spring)
+                                 : force_of<Dim, false>(law, pair, frame.dt, contact.spring),
+         Vec3::Zero(), Vec3::Zero()};
+  for (int c = 0; c < Dim; ++c) p.at[c] = store.x(contact.row)[c] + d[c];
+  p.on_wall[0] = -p.on_particle.fx;
+  p.on_wall[1] = -p.on_particle.fy;
+  if constexpr (Dim == 3) p.on_wall[2] = -p.on_particle.fz;
+  return p;
+}
+
+template <int Dim>
+void WallContacts<Dim>::add_to_rows(ParticleStore<Dim>& store, const Frame& frame, std::span<WallSums> sums,
+                                    std::int32_t begin, std::int32_t end) {
   auto it = std::lower_bound(list_.begin(), list_.end(), begin,
                              [](const WallContact<Dim>& c, std::int32_t row) { return c.row < row; });
   for (; it != list_.end() && it->row < end; ++it) {
-    const auto w = static_cast<std::size_t>(it->wall);
-    const WallSpec& spec = frame.specs[w];
-    const WallState& state = frame.states[w];
-    double d[3] = {};
-    nearest(spec, state, store.x(it->row), d);
-    const auto pair = pair_with_wall(store, it->row, d, state.velocity);
-    const auto law = constants_of(*frame.laws, frame.laws->code(spec.material, store.type[static_cast<std::size_t>(it->row)]));
-    const auto f = frame.laws->uses_mass() ? force_of<Dim, true>(law, pair, frame.dt, it->spring)
-                                           : force_of<Dim, false>(law, pair, frame.dt, it->spring);
+    const Push p = push(store, frame, *it);
     double* row = store.f(it->row);
-    Vec3 at = Vec3::Zero(), back = Vec3::Zero();
-    for (int c = 0; c < Dim; ++c) at[c] = store.x(it->row)[c] + d[c];
-    row[0] += f.fx, row[1] += f.fy;
-    back[0] = -f.fx, back[1] = -f.fy;
+    row[0] += p.on_particle.fx, row[1] += p.on_particle.fy;
     if constexpr (Dim == 2) {
-      row[2] += f.ft;
+      row[2] += p.on_particle.ft;
     } else {
-      row[2] += f.fz, back[2] = -f.fz;
-      row[4] += f.tx, row[5] += f.ty, row[6] += f.tz;
+      row[2] += p.on_particle.fz;
+      row[4] += p.on_particle.tx, row[5] += p.on_particle.ty, row[6] += p.on_particle.tz;
     }
-    if (!frame.sums.empty() && (back[0] != 0.0 || back[1] != 0.0 || back[2] != 0.0)) {
-      add_to_sums(frame.sums[w], state, at, back);
+    const auto w = static_cast<std::size_t>(it->wall);
+    const Vec3& v = frame.states[w].velocity;
+    const bool moves = frame.specs[w].is_loaded || v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0;
+    if (!moves || p.on_wall.isZero(0.0)) continue;
+    for (int c = 0; c < Dim; ++c) {
+      sums[w].force[c].add(p.on_wall[c]);
+      sums[w].work.add(-p.on_wall[c] * v[c] * frame.dt);
     }
+  }
+}
+
+template <int Dim>
+void WallContacts<Dim>::measure(const ParticleStore<Dim>& store, const Frame& frame, std::span<WallSums> sums) const {
+  for (WallContact<Dim> contact : list_) {
+    const Push p = push(store, frame, contact);
+    if (!p.on_wall.isZero(0.0)) sums[static_cast<std::size_t>(contact.wall)].add_force(frame.states[static_cast<std::size_t>(contact.wall)], p.at, p.on_wall);
   }
 }
 

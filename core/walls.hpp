@@ -4,11 +4,13 @@
 #include <span>
 #include <vector>
 
+#include <barchan/core/contact_law.hpp>
 #include <barchan/core/exact_sum.hpp>
 #include <barchan/core/kernels/pair_job.hpp>
 #include <barchan/core/law_table.hpp>
 #include <barchan/core/model.hpp>
 #include <barchan/core/particle_store.hpp>
+#include <barchan/core/simd/scalar.hpp>
 
 namespace barchan {
 
@@ -24,13 +26,10 @@ struct WallState {
 
 /// Order-free sums over the contacts of one wall.
 struct WallSums {
-  ExactSum force[3], torque[3];
-  void add(const WallSums& other) {
-    for (int c = 0; c < 3; ++c) {
-      force[c].add(other.force[c]);
-      torque[c].add(other.torque[c]);
-    }
-  }
+  ExactSum force[3], torque[3];  ///< of the particles on the wall [N], about its point [N·m]
+  ExactSum work;                 ///< of the wall on the particles [J]
+  void add(const WallSums& other);
+  void add_force(const WallState& state, const Vec3& at, const Vec3& force_on_wall);
 };
 
 /// A particle near a wall, with the tangential spring of their contact.
@@ -57,15 +56,23 @@ class WallContacts {
     std::span<const WallState> states;
     const LawTable* laws = nullptr;
     double dt = 0.0;
-    std::span<WallSums> sums;  ///< one a wall, or empty where nobody reads them
   };
-  /// Adds wall forces to rows [begin, end).
-  void add_to_rows(ParticleStore<Dim>& store, const Frame& frame, std::int32_t begin, std::int32_t end);
+  /// Adds wall forces to rows [begin, end). @param sums  one a wall; force and work of walls that move are added up
+  void add_to_rows(ParticleStore<Dim>& store, const Frame& frame, std::span<WallSums> sums, std::int32_t begin,
+                   std::int32_t end);
+  /// Force and torque on all walls as the next step will find them; changes no spring.
+  void measure(const ParticleStore<Dim>& store, const Frame& frame, std::span<WallSums> sums) const;
 
   /// Distance from a position to a wall and the vector to its nearest point.
   static double nearest(const WallSpec& spec, const WallState& state, const double* x, double* to_wall);
 
  private:
+  struct Push {
+    PairForce<simd::Scalar, Dim> on_particle;
+    Vec3 at, on_wall;
+  };
+  static Push push(const ParticleStore<Dim>& store, const Frame& frame, WallContact<Dim>& contact);
+
   std::vector<WallContact<Dim>> list_;
 };
 

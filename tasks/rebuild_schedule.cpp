@@ -10,7 +10,7 @@
 namespace barchan {
 
 RebuildSchedule::RebuildSchedule(const Communicator& communicator, double skin, double dt, double gravity)
-    : reduction_(communicator, 2, 0), skin_(skin), dt_(dt), gravity_(gravity) {}
+    : reduction_(communicator, 4, 0), skin_(skin), dt_(dt), gravity_(gravity) {}
 
 int RebuildSchedule::next_interval(double distance, double speed, double skin, double dt, double gravity, int last) {
   const auto is_safe = [&](int n) {
@@ -23,8 +23,8 @@ int RebuildSchedule::next_interval(double distance, double speed, double skin, d
   return n;
 }
 
-void RebuildSchedule::begin_check(const Travel& mine) {
-  const double maxima[2] = {mine.distance2, mine.speed2};
+void RebuildSchedule::begin_check(const Travel& mine, bool wants_stop) {
+  const double maxima[4] = {mine.distance2, mine.speed2, static_cast<double>(mine.outside), wants_stop ? 1.0 : 0.0};
   reduction_.begin(maxima, {});
 }
 
@@ -35,11 +35,21 @@ void RebuildSchedule::poll() {
 bool RebuildSchedule::must_rebuild(std::int64_t step) {
   if (step != check_step_ + kLag) return false;
   reduction_.wait();
-  const double distance = std::sqrt(reduction_.maxima()[0]), speed = std::sqrt(reduction_.maxima()[1]);
-  if (!(distance <= 0.5 * skin_)) {
+  const auto maxima = reduction_.maxima();
+  stop_agreed_ = maxima[3] > 0.0;
+  const double distance = std::sqrt(maxima[0]), speed = std::sqrt(maxima[1]);
+  if (!std::isfinite(distance) || !std::isfinite(speed)) {
+    throw RunError(fmt::format("at step {} the state is no longer finite: a smaller time.step, more damping or less overlap at the "
+                               "start would help", step - kLag));
+  }
+  if (maxima[2] > 0.0) {
+    throw RunError(fmt::format("at step {} particle {} has left the domain: enlarge domain.lo and domain.hi, or put a wall there",
+                               step - kLag, static_cast<std::int64_t>(maxima[2])));
+  }
+  if (distance > 0.5 * skin_) {
     throw RunError(fmt::format("at step {} a particle had moved {:.3g} m since the lists were built, more than half the skin of {:.3g} m "
-                               "(largest speed {:.3g} m/s): contacts may have been missed; give a larger search.skin or a smaller time.step",
-                               step - kLag, distance, skin_, speed));
+                               "(largest speed {:.3g} m/s): contacts may have been missed; give a larger search.skin or a smaller "
+                               "time.step", step - kLag, distance, skin_, speed));
   }
   const int n = next_interval(distance, speed, skin_, dt_, gravity_, interval_);
   if (n < 0) return true;
@@ -49,6 +59,7 @@ bool RebuildSchedule::must_rebuild(std::int64_t step) {
 }
 
 void RebuildSchedule::rebuilt(std::int64_t step) {
+  if (reduction_.is_in_flight()) reduction_.wait();  // a rebuild for another reason; the answer is stale
   interval_ = std::max(interval_ / 2, 1);
   check_step_ = step + interval_;
 }

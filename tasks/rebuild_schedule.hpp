@@ -26,24 +26,15 @@ class RebuildSchedule {
 
   /// Whether the check of step `step` is due, so that travel() must be called. Before the step.
   [[nodiscard]] bool is_check_due(std::int64_t step) const { return step == check_step_; }
-  void begin_check(const Travel& mine);
+  /// @param wants_stop  this rank was asked to stop; all ranks learn it with the answer
+  void begin_check(const Travel& mine, bool wants_stop);
 
   /// The decision for `step`, before it; waits for the reduction when its time has come.
-  /// Errors: RunError when a particle outran the skin.
+  /// Errors, the same on every rank: RunError when a particle outran the skin, left the domain or is not finite.
   [[nodiscard]] bool must_rebuild(std::int64_t step);
-  /// True while must_rebuild is certain to be false for `step`: messages for it may be sent early.
-  [[nodiscard]] bool is_decided(std::int64_t step) const { return step != check_step_ + kLag; }
+  [[nodiscard]] bool stop_agreed() const { return stop_agreed_; }
   void poll();  ///< lets the reduction advance
   void rebuilt(std::int64_t step);
-
-  /// Plain state, for checkpoints.
-  struct State {
-    std::int64_t check_step = 0;
-    std::int64_t interval = 0;
-    double distance2 = 0.0, speed2 = 0.0;  ///< of a check whose answer is not yet due
-  };
-  [[nodiscard]] State state();
-  void set_state(const State& state, std::int64_t step);
 
   /// The rule above. @return steps to the next check, or -1: rebuild
   static int next_interval(double distance, double speed, double skin, double dt, double gravity, int last);
@@ -53,6 +44,7 @@ class RebuildSchedule {
   double skin_, dt_, gravity_;
   std::int64_t check_step_ = 0;
   int interval_ = 0;
+  bool stop_agreed_ = false;
 };
 
 }  // namespace barchan

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -112,7 +113,9 @@ void Strip<Dim>::migrate(const ForEachLane& parallel) {
     return neighbours_.has(side) ? posts_[side == Side::Left ? 0 : posts_.size() - 1].out[at(side)] : none;
   };
   if (exchange_) exchange_->begin_bulk(outgoing(Side::Left), outgoing(Side::Right));
-  const std::int64_t before = num_owned();
+  if (neighbours_.has(Side::Left) || neighbours_.has(Side::Right)) {
+    for (int l = 0; l < num_lanes(); ++l) num_migrations_ += lane(l).num_leaving();
+  }
   parallel([this](int l) {
     for (const Side side : kSides) {
       if (!has_neighbour(l, side) || (is_outer(l, side) && neighbours_.has(side))) continue;
@@ -126,7 +129,6 @@ void Strip<Dim>::migrate(const ForEachLane& parallel) {
     if (neighbours_.has(Side::Right)) lane(num_lanes() - 1).absorb(exchange_->bulk(Side::Right));
   }
   parallel([this](int l) { lane(l).order(); });
-  num_migrations_ += std::max<std::int64_t>(0, before - num_owned());
 }
 
 template <int Dim>

@@ -1,0 +1,118 @@
+#include <barchan/tasks/engine.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <barchan/tasks/stop_request.hpp>
+
+namespace barchan {
+namespace {
+
+constexpr std::int64_t kStageCheck = 100;  // steps between looks at the kinetic ratio
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+}  // namespace
+
+template <int Dim>
+std::int64_t Simulation::EngineOf<Dim>::run(std::int64_t num_steps) {
+  const double begin = now();
+  std::int64_t done = 0;
+  for (; done < num_steps && !stopped_; ++done) step();
+  loop_seconds_ += now() - begin;
+  return done;
+}
+
+template <int Dim>
+void Simulation::EngineOf<Dim>::step() {
+  update_stage();
+  update_lists();
+  if (schedule_->is_check_due(step_)) schedule_->begin_check(travel(), stop_is_requested());
+  schedule_->poll();
+  plates_->drive(world_.walls, step_);
+
+  StepFrame frame;
+  frame.kick = step_ == 0 ? 0.5 * world_.dt : world_.dt;
+  for (int c = 0; c < 3; ++c) frame.gravity[c] = model_.gravity[c];
+  frame.local_damping = model_.stages[static_cast<std::size_t>(stage_)].local_damping;
+  graph_->run(frame);
+
+  if (plates_->needs_forces(world_.walls)) plates_->collect(wall_sums(), step_);
+  plates_->move(world_.walls);
+  ++step_;
+}
+
+template <int Dim>
+void Simulation::EngineOf<Dim>::update_lists() {
+  const bool travelled = schedule_->must_rebuild(step_);
+  stopped_ = stopped_ || schedule_->stop_agreed();
+  if (!travelled && !must_rebuild_) return;
+  const double begin = now();
+  strip_->rebuild([this](const std::function<void(int)>& body) { graph_->for_each_lane(body); });
+  for (std::size_t w = 0; w < world_.walls.size(); ++w) walls_at_rebuild_[w] = world_.walls[w].point;
+  schedule_->rebuilt(step_);
+  must_rebuild_ = false;
+  rebuild_seconds_ += now() - begin;
+}
+
+template <int Dim>
+void Simulation::EngineOf<Dim>::update_stage() {
+  if (step_ == 0) return;
+  if (static_cast<std::size_t>(stage_) + 1 < model_.stages.size() && stage_is_over()) enter_stage(stage_ + 1);
+}
+
+template <int Dim>
+bool Simulation::EngineOf<Dim>::stage_is_over() {
+  const Stage& stage = model_.stages[static_cast<std::size_t>(stage_)];
+  const std::int64_t steps = step_ - stage_begin_;
+  if (static_cast<double>(steps) * world_.dt >= stage.max_time - 0.5 * world_.dt) return true;
+  if (stage.kinetic_ratio <= 0.0 || steps == 0 || steps % kStageCheck != 0) return false;
+  const Measures m = measure();
+  return m.kinetic.value() < stage.kinetic_ratio * m.elastic.value();
+}
+
+template <int Dim>
+void Simulation::EngineOf<Dim>::enter_stage(int stage) {
+  stage_ = stage;
+  stage_begin_ = step_;
+  for (std::size_t w = 0; w < world_.walls.size(); ++w) {
+    const bool active = world_.wall_specs[w].from_stage <= stage;
+    if (active != world_.walls[w].is_active) must_rebuild_ = true;  // walls come into the lists
+    world_.walls[w].is_active = active;
+  }
+}
+
+template <int Dim>
+Travel Simulation::EngineOf<Dim>::travel() const {
+  Travel most;
+  for (int l = 0; l < strip_->num_lanes(); ++l) {
+    const Travel t = strip_->lane(l).travel();
+    if (!(t.distance2 <= most.distance2)) most.distance2 = t.distance2;
+    if (!(t.speed2 <= most.speed2)) most.speed2 = t.speed2;
+    most.outside = std::max(most.outside, t.outside);
+  }
+  for (std::size_t w = 0; w < world_.walls.size(); ++w) {
+    if (!world_.walls[w].is_active) continue;
+    most.distance2 = std::max(most.distance2, (world_.walls[w].point - walls_at_rebuild_[w]).squaredNorm());
+    most.speed2 = std::max(most.speed2, world_.walls[w].velocity.squaredNorm());
+  }
+  return most;
+}
+
+template <int Dim>
+std::vector<WallSums> Simulation::EngineOf<Dim>::wall_sums() const {
+  std::vector<WallSums> sums(world_.walls.size());
+  for (int l = 0; l < strip_->num_lanes(); ++l) {
+    const auto& mine = strip_->lane(l).wall_sums();
+    for (std::size_t w = 0; w < mine.size(); ++w) {
+      for (int c = 0; c < 3; ++c) sums[w].force[c].add(mine[w].force[c]);
+    }
+  }
+  return sums;
+}
+
+template class Simulation::EngineOf<2>;
+template class Simulation::EngineOf<3>;
+
+}  // namespace barchan

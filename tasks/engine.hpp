@@ -1,0 +1,85 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include <barchan/tasks/plates.hpp>
+#include <barchan/tasks/rebuild_schedule.hpp>
+#include <barchan/tasks/simulation.hpp>
+#include <barchan/tasks/step_graph.hpp>
+#include <barchan/tasks/strip.hpp>
+
+namespace barchan {
+
+/// Simulation's inside, free of the dimension.
+class Simulation::Engine {
+ public:
+  virtual ~Engine() = default;
+  virtual std::int64_t run(std::int64_t num_steps) = 0;
+  virtual void for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const = 0;
+  virtual void apply_forces(const std::function<Vec3(const OwnedParticle&)>& force) = 0;
+  virtual void clear_forces() = 0;
+  virtual Measures measure() = 0;
+  virtual std::uint64_t digest() = 0;
+  [[nodiscard]] virtual std::span<const WallState> walls() const = 0;
+  [[nodiscard]] virtual Timings timings() const = 0;
+  [[nodiscard]] virtual std::size_t memory_bytes() const = 0;
+  [[nodiscard]] virtual std::int64_t num_owned() const = 0;
+  [[nodiscard]] virtual std::string vector_width() const = 0;
+  [[nodiscard]] virtual double skin() const = 0;
+
+  Engine(const Model& model, MPI_Comm comm, RunOptions options)
+      : model_(model), options_(std::move(options)), communicator_(comm) {}
+
+  const Model model_;
+  RunOptions options_;
+  Communicator communicator_;
+  std::int64_t step_ = 0;
+  std::int64_t num_particles_ = 0;
+  int stage_ = 0;
+  bool stopped_ = false;
+};
+
+/// The time loop: when to rebuild, which stage it is, how walls move. One step itself is StepGraph.
+template <int Dim>
+class Simulation::EngineOf final : public Simulation::Engine {
+ public:
+  EngineOf(const Model& model, const ParticleSet& particles, MPI_Comm comm, const RunOptions& options);
+
+  std::int64_t run(std::int64_t num_steps) override;
+  void for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const override;
+  void apply_forces(const std::function<Vec3(const OwnedParticle&)>& force) override;
+  void clear_forces() override;
+  Measures measure() override;
+  std::uint64_t digest() override;
+  [[nodiscard]] std::span<const WallState> walls() const override { return world_.walls; }
+  [[nodiscard]] Timings timings() const override;
+  [[nodiscard]] std::size_t memory_bytes() const override { return strip_->bytes(); }
+  [[nodiscard]] std::int64_t num_owned() const override { return strip_->num_owned(); }
+  [[nodiscard]] std::string vector_width() const override { return name_of(world_.kernels.width); }
+  [[nodiscard]] double skin() const override { return world_.skin; }
+
+ private:
+  void make_world(const ParticleSet& particles);
+  void make_strip(const ParticleSet& particles);
+  void step();
+  void update_lists();
+  void update_stage();
+  void enter_stage(int stage);
+  [[nodiscard]] bool stage_is_over();
+  [[nodiscard]] Travel travel() const;
+  [[nodiscard]] std::vector<WallSums> wall_sums() const;
+  [[nodiscard]] OwnedParticle particle(const ParticleStore<Dim>& store, std::int32_t i) const;
+
+  World<Dim> world_;
+  std::unique_ptr<Strip<Dim>> strip_;
+  std::unique_ptr<StepGraph<Dim>> graph_;
+  std::unique_ptr<RebuildSchedule> schedule_;
+  std::unique_ptr<Plates> plates_;
+  std::vector<Vec3> walls_at_rebuild_;
+  std::int64_t stage_begin_ = 0;
+  bool must_rebuild_ = false;
+  double loop_seconds_ = 0.0, rebuild_seconds_ = 0.0;
+};
+
+}  // namespace barchan

@@ -1,0 +1,117 @@
+#include <limits>
+
+#include <barchan/tasks/engine.hpp>
+
+// What callers see of a simulation between steps.
+
+namespace barchan {
+
+template <int Dim>
+OwnedParticle Simulation::EngineOf<Dim>::particle(const ParticleStore<Dim>& store, std::int32_t i) const {
+  const auto at = static_cast<std::size_t>(i);
+  const double im = store.inverse_mass(i);
+  OwnedParticle p{store.id[at], store.type[at], store.radius(i), im > 0.0 ? 1.0 / im : std::numeric_limits<double>::infinity(),
+                  Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  for (int c = 0; c < Dim; ++c) {
+    p.position[c] = store.x(i)[c];
+    p.velocity[c] = store.v(i)[c];
+  }
+  for (int c = 0; c < kSpins<Dim>; ++c) p.omega[Dim == 2 ? 2 : c] = store.u(i)[c] / p.radius;
+  return p;
+}
+
+template <int Dim>
+void Simulation::EngineOf<Dim>::for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const {
+  for (int l = 0; l < strip_->num_lanes(); ++l) {
+    const auto& store = strip_->lane(l).store();
+    for (std::int32_t i = 0; i < store.num_owned; ++i) visit(particle(store, i));
+  }
+}
+
+template <int Dim>
+void Simulation::EngineOf<Dim>::apply_forces(const std::function<Vec3(const OwnedParticle&)>& force) {
+  for (int l = 0; l < strip_->num_lanes(); ++l) {
+    auto& store = strip_->lane(l).store();
+    store.external.assign(static_cast<std::size_t>(store.num_owned) * Layout<Dim>::kForce, 0.0);
+    for (std::int32_t i = 0; i < store.num_owned; ++i) {
+      const Vec3 f = force(particle(store, i));
+      for (int c = 0; c < Dim; ++c) store.external[static_cast<std::size_t>(i) * Layout<Dim>::kForce + static_cast<std::size_t>(c)] = f[c];
+    }
+  }
+}
+
+template <int Dim>
+void Simulation::EngineOf<Dim>::clear_forces() {
+  for (int l = 0; l < strip_->num_lanes(); ++l) strip_->lane(l).store().external.clear();
+}
+
+template <int Dim>
+Measures Simulation::EngineOf<Dim>::measure() {
+  strip_->complete_halo();
+  Measures mine;
+  std::vector<WallSums> walls(world_.walls.size());
+  for (int l = 0; l < strip_->num_lanes(); ++l) {
+    mine.add(strip_->lane(l).measure(model_.gravity));
+    const auto sums = strip_->lane(l).measure_walls();
+    for (std::size_t w = 0; w < sums.size(); ++w) walls[w].add(sums[w]);
+  }
+  std::vector<ExactSum*> exact{&mine.kinetic, &mine.elastic, &mine.gravitational};
+  for (ExactSum& p : mine.momentum) exact.push_back(&p);
+  for (WallSums& w : walls) {
+    for (int c = 0; c < 3; ++c) {
+      exact.push_back(&w.force[c]);
+      exact.push_back(&w.torque[c]);
+    }
+    exact.push_back(&w.work);
+  }
+  std::vector<std::int64_t> digits{mine.contacts, mine.bonds, mine.broken_bonds};
+  for (const ExactSum* sum : exact) digits.insert(digits.end(), sum->digits().begin(), sum->digits().end());
+  communicator_.allreduce_sum(std::span<std::int64_t>(digits));
+  auto from = digits.begin();
+  mine.contacts = *from++;
+  mine.bonds = *from++;
+  mine.broken_bonds = *from++;
+  for (ExactSum* sum : exact) {
+    std::copy_n(from, ExactSum::kDigits, sum->digits().begin());
+    from += ExactSum::kDigits;
+  }
+  double maxima[2] = {mine.max_overlap, mine.max_speed};
+  communicator_.allreduce_max(std::span<double>(maxima));
+  mine.max_overlap = maxima[0];
+  mine.max_speed = maxima[1];
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    for (int c = 0; c < 3; ++c) {
+      world_.walls[w].force[c] = walls[w].force[c].value();
+      world_.walls[w].torque[c] = walls[w].torque[c].value();
+    }
+    world_.walls[w].work = walls[w].work.value();
+  }
+  return mine;
+}
+
+template <int Dim>
+std::uint64_t Simulation::EngineOf<Dim>::digest() {
+  std::uint64_t sum = 0;
+  for (int l = 0; l < strip_->num_lanes(); ++l) sum += strip_->lane(l).digest();
+  communicator_.allreduce_sum(std::span(&sum, 1));
+  return sum;
+}
+
+template <int Dim>
+Timings Simulation::EngineOf<Dim>::timings() const {
+  Timings t;
+  const StepTimes& steps = graph_->times();
+  t.loop_seconds = loop_seconds_;
+  t.phases = {{"forces", steps.chunks}, {"bands", steps.bands}, {"poll", steps.poll}, {"wait", steps.exposed}, {"rebuild", rebuild_seconds_}};
+  t.in_flight_seconds = steps.in_flight;
+  t.exposed_seconds = steps.exposed;
+  t.rebuilds = strip_->num_rebuilds();
+  t.migrations = strip_->num_migrations();
+  if (strip_->exchange() != nullptr) t.exchange = strip_->exchange()->stats();
+  return t;
+}
+
+template class Simulation::EngineOf<2>;
+template class Simulation::EngineOf<3>;
+
+}  // namespace barchan

@@ -1,0 +1,79 @@
+#include <barchan/tasks/results/series_table.hpp>
+
+#include <array>
+#include <cctype>
+
+#include <barchan/tasks/results/agree.hpp>
+
+namespace barchan {
+namespace {
+
+constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
+
+bool moves(const WallSpec& wall) { return wall.is_loaded || !wall.velocity.isZero(); }
+
+std::vector<std::string> columns_of(const Model& model, const std::vector<Ring>& rings) {
+  std::vector<std::string> columns{"elastic_energy", "gravitational_energy"};
+  const auto add_vector = [&](const std::string& name) {
+    for (int c = 0; c < model.dimension; ++c) columns.push_back(name + "_" + kAxes[static_cast<std::size_t>(c)]);
+  };
+  add_vector("momentum");
+  for (const char* name : {"bonds", "broken_bonds", "max_speed", "stage"}) columns.emplace_back(name);
+  for (const WallSpec& wall : model.walls) {
+    add_vector(column_name(wall.name) + "_force");
+    if (moves(wall)) add_vector(column_name(wall.name) + "_position");
+  }
+  for (const Ring& ring : rings) {
+    columns.push_back(ring.name + "_diameter_x");
+    columns.push_back(ring.name + "_diameter_y");
+  }
+  return columns;
+}
+
+std::vector<double> values_of(const Simulation& simulation, const Measures& m, const std::vector<double>& diameters) {
+  const Model& model = simulation.model();
+  std::vector<double> values{m.elastic.value(), m.gravitational.value()};
+  for (int c = 0; c < model.dimension; ++c) values.push_back(m.momentum[c].value());
+  values.insert(values.end(), {static_cast<double>(m.bonds), static_cast<double>(m.broken_bonds), m.max_speed,
+                               static_cast<double>(simulation.stage() + 1)});
+  const auto walls = simulation.walls();
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    for (int c = 0; c < model.dimension; ++c) values.push_back(walls[w].force[c]);
+    if (!moves(model.walls[w])) continue;
+    for (int c = 0; c < model.dimension; ++c) values.push_back(walls[w].point[c]);
+  }
+  values.insert(values.end(), diameters.begin(), diameters.end());
+  return values;
+}
+
+}  // namespace
+
+std::string column_name(const std::string& name) {
+  std::string column = name;
+  for (char& c : column) {
+    const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-';
+    if (!is_plain) c = '_';
+  }
+  return column;
+}
+
+SeriesTable::SeriesTable(const Simulation& simulation, const std::string& path, std::vector<Ring> rings)
+    : rings_(std::move(rings)) {
+  agree(simulation.communicator(), [&] {
+    if (!simulation.communicator().is_root()) return;
+    writer_.emplace(SeriesWriter::create(path, columns_of(simulation.model(), rings_)));
+  });
+}
+
+Measures SeriesTable::append(Simulation& simulation) {
+  const Measures m = simulation.measure();
+  const std::vector<double> diameters = ring_diameters(simulation, rings_);
+  agree(simulation.communicator(), [&] {
+    if (!writer_) return;
+    writer_->append({simulation.step(), simulation.time(), m.kinetic.value(), m.contacts, m.max_overlap},
+                    values_of(simulation, m, diameters));
+  });
+  return m;
+}
+
+}  // namespace barchan

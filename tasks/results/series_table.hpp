@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <barchan/core/io/series.hpp>
+#include <barchan/tasks/results/rings.hpp>
+#include <barchan/tasks/simulation.hpp>
+
+namespace barchan {
+
+/// series.csv of a run: energies, momentum, bonds, wall forces and ring diameters; docs/run_folder.md has the columns.
+class SeriesTable {
+ public:
+  /// Starts the file on rank 0. Collective. Errors: RunError.
+  SeriesTable(const Simulation& simulation, const std::string& path, std::vector<Ring> rings);
+
+  /// A row of the state as it is. Collective. @return what was measured. Errors: RunError.
+  Measures append(Simulation& simulation);
+
+ private:
+  std::vector<Ring> rings_;
+  std::optional<SeriesWriter> writer_;  ///< rank 0
+};
+
+/// A name as a column's: letters, digits, - and _; all else becomes _.
+[[nodiscard]] std::string column_name(const std::string& name);
+
+}  // namespace barchan

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <barchan/core/io/vtp.hpp>
+#include <barchan/tasks/simulation.hpp>
+
+namespace barchan {
+
+/// Densities [kg/m³, 2D kg/m²] that a simulation does not keep: those that differ from their material's.
+class Densities {
+ public:
+  Densities(const Model& model, const ParticleSet& particles);
+  [[nodiscard]] double of(std::int64_t id, std::int32_t type) const;
+
+ private:
+  std::vector<double> of_material_;
+  std::vector<std::pair<std::int64_t, double>> others_;  ///< by id
+};
+
+/// Snapshots of a run: one piece a rank, a .pvtp a time, a .pvd in all.
+class SnapshotWriter {
+ public:
+  SnapshotWriter(std::string folder, Densities densities)
+      : folder_(std::move(folder)), densities_(std::move(densities)) {}
+
+  /// The state as it is. Collective. Errors: RunError.
+  void write(const Simulation& simulation);
+  [[nodiscard]] std::int64_t last_step() const { return last_step_; }  ///< -1: none yet
+
+ private:
+  std::string folder_;
+  Densities densities_;
+  std::vector<PvdEntry> entries_;
+  std::int64_t last_step_ = -1;
+};
+
+}  // namespace barchan

@@ -1,0 +1,57 @@
+#include <barchan/tasks/simulation.hpp>
+
+#include <atomic>
+
+#include <barchan/core/error.hpp>
+#include <barchan/tasks/engine.hpp>
+#include <barchan/tasks/stop_request.hpp>
+
+namespace barchan {
+namespace {
+
+std::atomic<bool> stop_requested{false};
+
+}  // namespace
+
+bool stop_is_requested() noexcept { return stop_requested.load(std::memory_order_relaxed); }
+
+void Simulation::request_stop() noexcept { stop_requested.store(true, std::memory_order_relaxed); }
+
+std::vector<std::string> exchange_choices() {
+  auto names = exchange_names();
+  names.emplace_back("return");
+  return names;
+}
+
+Simulation::Simulation(const Model& model, const ParticleSet& particles, MPI_Comm communicator, const RunOptions& options) {
+  if (model.dimension == 2) engine_ = std::make_unique<EngineOf<2>>(model, particles, communicator, options);
+  else if (model.dimension == 3) engine_ = std::make_unique<EngineOf<3>>(model, particles, communicator, options);
+  else throw InputError("dimension " + std::to_string(model.dimension), "2 or 3");
+}
+
+Simulation::~Simulation() = default;
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+
+std::int64_t Simulation::run(std::int64_t num_steps) { return engine_->run(num_steps); }
+bool Simulation::stopped() const { return engine_->stopped_; }
+std::int64_t Simulation::step() const { return engine_->step_; }
+double Simulation::time() const { return static_cast<double>(engine_->step_) * engine_->model_.time.step; }
+int Simulation::stage() const { return engine_->stage_; }
+const Model& Simulation::model() const { return engine_->model_; }
+const RunOptions& Simulation::options() const { return engine_->options_; }
+std::string Simulation::vector_width() const { return engine_->vector_width(); }
+const Communicator& Simulation::communicator() const { return engine_->communicator_; }
+void Simulation::for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const { engine_->for_each_owned(visit); }
+std::int64_t Simulation::num_owned() const { return engine_->num_owned(); }
+std::int64_t Simulation::num_particles() const { return engine_->num_particles_; }
+void Simulation::apply_forces(const std::function<Vec3(const OwnedParticle&)>& force) { engine_->apply_forces(force); }
+void Simulation::clear_forces() { engine_->clear_forces(); }
+Measures Simulation::measure() { return engine_->measure(); }
+std::span<const WallState> Simulation::walls() const { return engine_->walls(); }
+std::uint64_t Simulation::digest() { return engine_->digest(); }
+Timings Simulation::timings() const { return engine_->timings(); }
+double Simulation::skin() const { return engine_->skin(); }
+std::size_t Simulation::memory_bytes() const { return engine_->memory_bytes(); }
+
+}  // namespace barchan

@@ -1,0 +1,21 @@
+#include <barchan/tasks/threads.hpp>
+
+#include <sched.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+namespace barchan {
+
+int default_threads(const Communicator& communicator) {
+  const long cores = sysconf(_SC_NPROCESSORS_ONLN);
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  const bool knows = sched_getaffinity(0, sizeof allowed, &allowed) == 0;
+  const int share = static_cast<int>(std::max<long>(1, cores / communicator.node_size()));
+  double fewest = knows ? std::min(share, std::max(1, CPU_COUNT(&allowed))) : share;
+  communicator.allreduce_min(std::span(&fewest, 1));
+  return static_cast<int>(fewest);
+}
+
+}  // namespace barchan
