@@ -36,7 +36,9 @@ double mass_of(const ParticleData& p, int dimension) {
   return p.fixed ? kInfinite : std::numbers::pi * body * p.density;
 }
 
-double spin_gain(int dimension) { return dimension == 2 ? Layout<2>::kSpinGain : Layout<3>::kSpinGain; }
+double spin_gain(int dimension) {
+  return dimension == 2 ? Layout<2>::kSpinGain : Layout<3>::kSpinGain;
+}
 
 /// The limits, one entry a name, each the smallest seen.
 class Limits {
@@ -58,7 +60,8 @@ class Limits {
   std::map<std::string, double> steps_;
 };
 
-/// Inverse masses of the two lightest particles of a material; 0 for fixed ones, -1 where there is none.
+/// Inverse masses of the two lightest particles of a material; 0 for fixed ones, -1 where there is
+/// none.
 struct Lightest {
   double first = -1.0;
   double second = -1.0;
@@ -77,8 +80,8 @@ std::vector<Lightest> lightest_of(const Model& model, const ParticleSet& set) {
   return lightest;
 }
 
-void add_contact(const std::string& name, const ContactConstants& law, double inverse_mass, int dimension,
-                 Limits& limits) {
+void add_contact(const std::string& name, const ContactConstants& law, double inverse_mass,
+                 int dimension, Limits& limits) {
   if (!(inverse_mass > 0.0)) return;
   const double m = 1.0 / inverse_mass;
   const double cn = coefficient(law.cn, m), ct = coefficient(law.ct, m);
@@ -96,33 +99,39 @@ void add_contacts(const Model& model, const std::vector<Lightest>& lightest, Lim
     for (int b = a; b < n; ++b) {
       const double other = a == b ? mine.second : lightest[static_cast<std::size_t>(b)].first;
       if (other < 0.0) continue;
-      add_contact(name(a) + "–" + name(b), model.contacts.at(a, b), mine.first + other, model.dimension, limits);
+      add_contact(name(a) + "–" + name(b), model.contacts.at(a, b), mine.first + other,
+                  model.dimension, limits);
     }
     for (const WallSpec& wall : model.walls) {
-      add_contact(name(a) + "–wall of " + name(wall.material), model.contacts.at(a, wall.material), mine.first,
-                  model.dimension, limits);
+      add_contact(name(a) + "–wall of " + name(wall.material), model.contacts.at(a, wall.material),
+                  mine.first, model.dimension, limits);
     }
   }
 }
 
-/// Stiffness and damping of one particle in its bonds, per mass [1/s², 1/s]: partners move against it.
+/// Stiffness and damping of one particle in its bonds, per mass [1/s², 1/s]: partners move against
+/// it.
 struct Bonded {
   Eigen::Matrix3d k = Eigen::Matrix3d::Zero(), c = Eigen::Matrix3d::Zero();
   double shear_k = 0.0, shear_c = 0.0, bend_k = 0.0, bend_c = 0.0;
 
-  void add_linear(const Vec3& normal, double along_k, double across_k, double along_c, double across_c, int dimension) {
+  void add_linear(const Vec3& normal, double along_k, double across_k, double along_c,
+                  double across_c, int dimension) {
     Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - normal * normal.transpose();
     if (dimension == 2) across(2, 2) = 0.0;
     k += along_k * normal * normal.transpose() + across_k * across;
     c += along_c * normal * normal.transpose() + across_c * across;
   }
   [[nodiscard]] static double largest(const Eigen::Matrix3d& matrix) {
-    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix, Eigen::EigenvaluesOnly).eigenvalues()[2];
+    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix, Eigen::EigenvaluesOnly)
+        .eigenvalues()[2];
   }
 };
 
-BondSection section_of(const Model& model, const BondLaw& law, double length, double r_a, double r_b) {
-  return model.dimension == 2 ? bond_section<2>(law, length, r_a, r_b) : bond_section<3>(law, length, r_a, r_b);
+BondSection section_of(const Model& model, const BondLaw& law, double length, double r_a,
+                       double r_b) {
+  return model.dimension == 2 ? bond_section<2>(law, length, r_a, r_b)
+                              : bond_section<3>(law, length, r_a, r_b);
 }
 
 /// From a to b, by the nearest image.
@@ -130,13 +139,14 @@ Vec3 between(const Domain& domain, const Vec3& a, const Vec3& b) {
   Vec3 d = b - a;
   for (int axis = 0; axis < 3; ++axis) {
     const double length = domain.hi[axis] - domain.lo[axis];
-    if (domain.periodic[static_cast<std::size_t>(axis)] && length > 0.0) d[axis] -= length * std::rint(d[axis] / length);
+    if (domain.periodic[static_cast<std::size_t>(axis)] && length > 0.0)
+      d[axis] -= length * std::rint(d[axis] / length);
   }
   return d;
 }
 
-void add_bond(const Model& model, const BondLaw& law, const ParticleData& a, const ParticleData& b, Bonded& of_a,
-              Bonded& of_b) {
+void add_bond(const Model& model, const BondLaw& law, const ParticleData& a, const ParticleData& b,
+              Bonded& of_a, Bonded& of_b) {
   const Vec3 d = between(model.domain, a.position, b.position);
   const double length = d.norm();
   const double inverse = 1.0 / mass_of(a, model.dimension) + 1.0 / mass_of(b, model.dimension);
@@ -147,10 +157,14 @@ void add_bond(const Model& model, const BondLaw& law, const ParticleData& a, con
                                  1.0 / (mass_of(b, model.dimension) * b.radius * b.radius));
   const double shear = (1.0 + gain) * inverse;
   const double bending = std::max(s.bending, model.dimension == 3 ? s.twisting : 0.0);
-  const auto dashpot = [&](double k, double inverse_m) { return 2.0 * law.damping_ratio * std::sqrt(k / inverse_m) * inverse_m; };
-  const double ks_share = std::sqrt(inverse / shear);  // the shear dashpot is critical for the mass without rotation
+  const auto dashpot = [&](double k, double inverse_m) {
+    return 2.0 * law.damping_ratio * std::sqrt(k / inverse_m) * inverse_m;
+  };
+  const double ks_share =
+      std::sqrt(inverse / shear);  // the shear dashpot is critical for the mass without rotation
   for (Bonded* p : {&of_a, &of_b}) {
-    p->add_linear(d / length, s.kn * inverse, s.ks * inverse, dashpot(s.kn, inverse), dashpot(s.ks, inverse), model.dimension);
+    p->add_linear(d / length, s.kn * inverse, s.ks * inverse, dashpot(s.kn, inverse),
+                  dashpot(s.ks, inverse), model.dimension);
     p->shear_k += s.ks * shear;
     p->shear_c += dashpot(s.ks, shear) / ks_share;
     p->bend_k += bending * turning;
@@ -158,23 +172,28 @@ void add_bond(const Model& model, const BondLaw& law, const ParticleData& a, con
   }
 }
 
-/// For every particle with bonds the limits of all of them together, under the name of each of its laws.
+/// For every particle with bonds the limits of all of them together, under the name of each of its
+/// laws.
 void add_bonds(const Model& model, const ParticleSet& set, Limits& limits) {
   if (set.bonds.empty()) return;
   std::vector<std::size_t> by_id(set.particles.size());
   std::iota(by_id.begin(), by_id.end(), std::size_t{0});
   const auto id_of = [&](std::size_t i) { return set.particles[i].id; };
-  std::sort(by_id.begin(), by_id.end(), [&](std::size_t a, std::size_t b) { return id_of(a) < id_of(b); });
+  std::sort(by_id.begin(), by_id.end(),
+            [&](std::size_t a, std::size_t b) { return id_of(a) < id_of(b); });
   const auto find = [&](std::int64_t id) {
-    return *std::lower_bound(by_id.begin(), by_id.end(), id, [&](std::size_t i, std::int64_t wanted) { return id_of(i) < wanted; });
+    return *std::lower_bound(by_id.begin(), by_id.end(), id,
+                             [&](std::size_t i, std::int64_t wanted) { return id_of(i) < wanted; });
   };
   std::map<std::size_t, Bonded> bonded;
   for (const BondData& bond : set.bonds) {
     const std::size_t a = find(bond.id_a), b = find(bond.id_b);
-    add_bond(model, model.bond_laws[static_cast<std::size_t>(bond.law)], set.particles[a], set.particles[b], bonded[a], bonded[b]);
+    add_bond(model, model.bond_laws[static_cast<std::size_t>(bond.law)], set.particles[a],
+             set.particles[b], bonded[a], bonded[b]);
   }
   const auto add = [&](const Bonded& p, const std::string& law) {
-    limits.add("bond " + law + ", stretching", stable_step(1.0, Bonded::largest(p.k), Bonded::largest(p.c)));
+    limits.add("bond " + law + ", stretching",
+               stable_step(1.0, Bonded::largest(p.k), Bonded::largest(p.c)));
     limits.add("bond " + law + ", shearing", stable_step(1.0, p.shear_k, p.shear_c));
     limits.add("bond " + law + ", bending", stable_step(1.0, p.bend_k, p.bend_c));
   };
@@ -187,9 +206,11 @@ void add_bonds(const Model& model, const ParticleSet& set, Limits& limits) {
   }
 }
 
-void add_plates(const Model& model, const ParticleSet& set, const std::vector<Lightest>& lightest, Limits& limits) {
+void add_plates(const Model& model, const ParticleSet& set, const std::vector<Lightest>& lightest,
+                Limits& limits) {
   double mean = 0.0;
-  for (const ParticleData& p : set.particles) mean += p.radius / static_cast<double>(set.particles.size());
+  for (const ParticleData& p : set.particles)
+    mean += p.radius / static_cast<double>(set.particles.size());
   for (const WallSpec& wall : model.walls) {
     if (!wall.is_loaded || !(wall.mass > 0.0)) continue;
     const double along = wall.width / (2.0 * mean);
@@ -223,17 +244,20 @@ std::vector<StepLimit> step_limits(const Model& model, const ParticleSet& partic
 
 void check_time_step(const Model& model, std::span<const StepLimit> limits) {
   if (limits.empty() || model.time.allow_unstable || model.time.step <= limits.front().step) return;
-  throw InputError(SourcePlace{model.deck_file, 0, 0},
-                   fmt::format("time.step = {:g} s is unstable: the limit is {:.3g} s ({})", model.time.step,
-                               limits.front().step, limits.front().what),
-                   fmt::format("use at most {:.3g} s, better {:.2g} s, or set time.allow_unstable = true",
-                               rounded_down(limits.front().step), kAdvisedShare * limits.front().step));
+  throw InputError(
+      SourcePlace{model.deck_file, 0, 0},
+      fmt::format("time.step = {:g} s is unstable: the limit is {:.3g} s ({})", model.time.step,
+                  limits.front().step, limits.front().what),
+      fmt::format("use at most {:.3g} s, better {:.2g} s, or set time.allow_unstable = true",
+                  rounded_down(limits.front().step), kAdvisedShare * limits.front().step));
 }
 
 double default_skin(const ParticleSet& particles) {
   double sum = 0.0;
   for (const ParticleData& p : particles.particles) sum += p.radius;
-  return particles.particles.empty() ? 0.0 : kSkinShare * sum / static_cast<double>(particles.particles.size());
+  return particles.particles.empty()
+             ? 0.0
+             : kSkinShare * sum / static_cast<double>(particles.particles.size());
 }
 
 }  // namespace barchan

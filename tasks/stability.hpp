@@ -10,7 +10,7 @@ namespace barchan {
 
 /// One limit on the time step.
 struct StepLimit {
-  std::string what;   ///< such as "contact soil–duct", "damping soil–soil", "bond link, stretching"
+  std::string what;  ///< such as "contact soil–duct", "damping soil–soil", "bond link, stretching"
   double step = 0.0;  ///< [s]
 };
 
@@ -18,11 +18,14 @@ struct StepLimit {
 ///
 /// With mass m, stiffness k and dashpot c the leapfrog with a lagging velocity is stable for
 ///   dt <= (sqrt(c² + 4·m·k) − c) / k,    2·sqrt(m/k) without dashpot, 2·m/c without spring.
-/// - "contact" and "damping": two particles of these materials alone, the lightest there are, without and with
-///   the dashpot; "tangential": the same with kt, ct and the mass that sliding and rolling have together;
-///   "wall": a particle against a material of infinite mass. A particle in a packing touches several others
-///   and is stiffer than a pair by up to 3 (disks) or 4 (spheres) in k and c: hence kAdvisedShare.
-/// - "bond": every particle with all of its bonds, its partners moving against it, exact for a pair and for
+/// - "contact" and "damping": two particles of these materials alone, the lightest there are,
+/// without and with
+///   the dashpot; "tangential": the same with kt, ct and the mass that sliding and rolling have
+///   together; "wall": a particle against a material of infinite mass. A particle in a packing
+///   touches several others and is stiffer than a pair by up to 3 (disks) or 4 (spheres) in k and
+///   c: hence kAdvisedShare.
+/// - "bond": every particle with all of its bonds, its partners moving against it, exact for a pair
+/// and for
 ///   a long chain; stretching, shearing (with rotation) and bending each for itself.
 /// - "plate": a loaded plate on as many of the particles as fit under it side by side.
 /// @param particles  fixed ones count as infinitely heavy

@@ -20,7 +20,8 @@ struct Seen {
 std::vector<std::byte> seen_here(const Simulation& simulation) {
   std::vector<Seen> seen;
   simulation.for_each_owned([&](const OwnedParticle& p) {
-    seen.push_back({p.position.x(), p.position.y(), p.position.z(), p.radius, p.velocity.norm(), p.type, 0});
+    seen.push_back(
+        {p.position.x(), p.position.y(), p.position.z(), p.radius, p.velocity.norm(), p.type, 0});
   });
   const auto bytes = std::as_bytes(std::span<const Seen>(seen));
   return {bytes.begin(), bytes.end()};
@@ -44,7 +45,8 @@ struct Scene {
 };
 
 /// The stretch of a straight line that lies in the domain's rectangle (x and `up`).
-void add_clipped(const Domain& domain, int up, Vec3 point, const Vec3& along, std::vector<PictureLine>& lines) {
+void add_clipped(const Domain& domain, int up, Vec3 point, const Vec3& along,
+                 std::vector<PictureLine>& lines) {
   double lo = -1e300, hi = 1e300;
   for (const int axis : {0, up}) {
     const double a = domain.lo[axis] - point[axis], b = domain.hi[axis] - point[axis];
@@ -67,14 +69,17 @@ std::vector<PictureLine> wall_lines(const Simulation& simulation) {
   for (std::size_t w = 0; w < model.walls.size(); ++w) {
     const WallSpec& spec = model.walls[w];
     const WallState& state = simulation.walls()[w];
-    if (!state.is_active || std::hypot(spec.normal.x(), spec.normal[up]) < 0.999) continue;  // seen edge-on only
+    if (!state.is_active || std::hypot(spec.normal.x(), spec.normal[up]) < 0.999)
+      continue;  // seen edge-on only
     Vec3 along = Vec3::Zero();
     along.x() = -spec.normal[up];
     along[up] = spec.normal.x();
     if (spec.kind == WallKind::Plane) {
       add_clipped(model.domain, up, state.point, along, lines);
     } else {
-      const double half = 0.5 * spec.width;
+      // An upright plate in 3D has its width along the line of sight.
+      const bool is_upright = model.dimension == 3 && std::fabs(spec.normal.x()) > 0.5;
+      const double half = 0.5 * (is_upright ? spec.depth : spec.width);
       lines.push_back({state.point - half * along, state.point + half * along});
     }
   }
@@ -89,14 +94,16 @@ void draw(const Simulation& simulation, const Scene& scene, const std::string& p
   input.hi = model.domain.hi;
   input.positions = scene.positions;
   input.radii = scene.radii;
-  const bool is_mixed = std::any_of(scene.kinds.begin(), scene.kinds.end(), [&](double k) { return k != scene.kinds.front(); });
+  const bool is_mixed = std::any_of(scene.kinds.begin(), scene.kinds.end(),
+                                    [&](double k) { return k != scene.kinds.front(); });
   input.values = is_mixed ? scene.kinds : scene.speeds;
   input.values_are_kinds = is_mixed;
   if (is_mixed) {
     for (const Material& material : model.materials) input.kinds.push_back(material.name);
   }
   input.label = "speed [m/s]";
-  input.title = fmt::format("{}{}t = {:.4g} s", model.title, model.title.empty() ? "" : ", ", simulation.time());
+  input.title = fmt::format("{}{}t = {:.4g} s", model.title, model.title.empty() ? "" : ", ",
+                            simulation.time());
   input.lines = wall_lines(simulation);
   write_picture(path, input);
 }

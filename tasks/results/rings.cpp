@@ -15,8 +15,8 @@ double nearest_image(const Domain& domain, int axis, double distance) {
 
 }  // namespace
 
-std::vector<Ring> find_rings(std::span<const ParticleSource> sources, std::span<const std::size_t> begins,
-                             const ParticleSet& particles) {
+std::vector<Ring> find_rings(std::span<const ParticleSource> sources,
+                             std::span<const std::size_t> begins, const ParticleSet& particles) {
   std::vector<Ring> rings;
   for (std::size_t s = 0; s < sources.size(); ++s) {
     const auto* source = std::get_if<RingSource>(&sources[s].kind);

@@ -20,11 +20,13 @@ struct Ring {
 
 /// The rings of a deck: ring1, ring2, ... @param begins  see make_particles
 [[nodiscard]] std::vector<Ring> find_rings(std::span<const ParticleSource> sources,
-                                           std::span<const std::size_t> begins, const ParticleSet& particles);
+                                           std::span<const std::size_t> begins,
+                                           const ParticleSet& particles);
 
-/// Extent of every ring, largest less smallest coordinate of its disks' centres: x and y of the first, of the
-/// second, … [m]. Across a periodic border by the image nearest to the ring's first centre.
-/// Collective.
-[[nodiscard]] std::vector<double> ring_diameters(const Simulation& simulation, std::span<const Ring> rings);
+/// Extent of every ring, largest less smallest coordinate of its disks' centres: x and y of the
+/// first, of the second, … [m]. Across a periodic border by the image nearest to the ring's first
+/// centre. Collective.
+[[nodiscard]] std::vector<double> ring_diameters(const Simulation& simulation,
+                                                 std::span<const Ring> rings);
 
 }  // namespace barchan

@@ -15,7 +15,8 @@ namespace {
 
 constexpr const char* kElsewhere = "give another output folder";
 
-[[noreturn]] void refuse(const std::string& path, const std::string& why, const std::string& remedy) {
+[[noreturn]] void refuse(const std::string& path, const std::string& why,
+                         const std::string& remedy) {
   throw InputError(SourcePlace{path, 0, 0}, why, remedy);
 }
 
@@ -38,7 +39,8 @@ bool is_snapshot(const fs::path& file) {
 }
 
 void remove_results(const std::string& path) {
-  for (const char* name : {"run.json", "series.csv", "picture.png", "trace.json"}) fs::remove(path + "/" + name);
+  for (const char* name : {"run.json", "series.csv", "picture.png", "trace.json"})
+    fs::remove(path + "/" + name);
   fs::remove_all(path + "/checkpoints");
   const fs::path snapshots = path + "/snapshots";
   if (!fs::is_directory(snapshots)) return;
@@ -58,12 +60,15 @@ void RunFolder::check(bool may_replace) const {
   std::error_code error;
   const fs::file_status status = fs::status(path_, error);
   if (status.type() == fs::file_type::directory) {
-    if (!may_replace) refuse(path_, "the output folder already exists", "give another one, or --force to replace its results");
+    if (!may_replace)
+      refuse(path_, "the output folder already exists",
+             "give another one, or --force to replace its results");
     return check_writable(path_, path_);
   }
   if (fs::exists(status)) refuse(path_, "the output folder is a file", kElsewhere);
   const fs::path parent = nearest_existing(path_);
-  if (!fs::is_directory(parent, error)) refuse(path_, "cannot make this folder: " + parent.string() + " is a file", kElsewhere);
+  if (!fs::is_directory(parent, error))
+    refuse(path_, "cannot make this folder: " + parent.string() + " is a file", kElsewhere);
   check_writable(parent, path_);
 }
 

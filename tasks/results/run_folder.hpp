@@ -19,8 +19,8 @@ class RunFolder {
   /// Errors: InputError when it exists and may not be replaced, is a file, or cannot be written.
   void check(bool may_replace) const;
 
-  /// Makes the folder and removes what an earlier run left: all that has the name of a result, nothing else. One rank.
-  /// Errors: InputError.
+  /// Makes the folder and removes what an earlier run left: all that has the name of a result,
+  /// nothing else. One rank. Errors: InputError.
   void begin() const;
 
  private:

@@ -10,15 +10,19 @@ namespace {
 
 constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
 
-bool moves(const WallSpec& wall) { return wall.is_loaded || !wall.velocity.isZero(); }
+bool moves(const WallSpec& wall) {
+  return wall.is_loaded || !wall.velocity.isZero();
+}
 
 std::vector<std::string> columns_of(const Model& model, const std::vector<Ring>& rings) {
   std::vector<std::string> columns{"elastic_energy", "gravitational_energy"};
   const auto add_vector = [&](const std::string& name) {
-    for (int c = 0; c < model.dimension; ++c) columns.push_back(name + "_" + kAxes[static_cast<std::size_t>(c)]);
+    for (int c = 0; c < model.dimension; ++c)
+      columns.push_back(name + "_" + kAxes[static_cast<std::size_t>(c)]);
   };
   add_vector("momentum");
-  for (const char* name : {"bonds", "broken_bonds", "max_speed", "stage"}) columns.emplace_back(name);
+  for (const char* name : {"bonds", "broken_bonds", "max_speed", "stage"})
+    columns.emplace_back(name);
   for (const WallSpec& wall : model.walls) {
     add_vector(column_name(wall.name) + "_force");
     if (moves(wall)) add_vector(column_name(wall.name) + "_position");
@@ -30,12 +34,13 @@ std::vector<std::string> columns_of(const Model& model, const std::vector<Ring>&
   return columns;
 }
 
-std::vector<double> values_of(const Simulation& simulation, const Measures& m, const std::vector<double>& diameters) {
+std::vector<double> values_of(const Simulation& simulation, const Measures& m,
+                              const std::vector<double>& diameters) {
   const Model& model = simulation.model();
   std::vector<double> values{m.elastic.value(), m.gravitational.value()};
   for (int c = 0; c < model.dimension; ++c) values.push_back(m.momentum[c].value());
-  values.insert(values.end(), {static_cast<double>(m.bonds), static_cast<double>(m.broken_bonds), m.max_speed,
-                               static_cast<double>(simulation.stage() + 1)});
+  values.insert(values.end(), {static_cast<double>(m.bonds), static_cast<double>(m.broken_bonds),
+                               m.max_speed, static_cast<double>(simulation.stage() + 1)});
   const auto walls = simulation.walls();
   for (std::size_t w = 0; w < walls.size(); ++w) {
     for (int c = 0; c < model.dimension; ++c) values.push_back(walls[w].force[c]);
@@ -57,7 +62,8 @@ std::string column_name(const std::string& name) {
   return column;
 }
 
-SeriesTable::SeriesTable(const Simulation& simulation, const std::string& path, std::vector<Ring> rings)
+SeriesTable::SeriesTable(const Simulation& simulation, const std::string& path,
+                         std::vector<Ring> rings)
     : rings_(std::move(rings)) {
   agree(simulation.communicator(), [&] {
     if (!simulation.communicator().is_root()) return;
@@ -70,8 +76,9 @@ Measures SeriesTable::append(Simulation& simulation) {
   const std::vector<double> diameters = ring_diameters(simulation, rings_);
   agree(simulation.communicator(), [&] {
     if (!writer_) return;
-    writer_->append({simulation.step(), simulation.time(), m.kinetic.value(), m.contacts, m.max_overlap},
-                    values_of(simulation, m, diameters));
+    writer_->append(
+        {simulation.step(), simulation.time(), m.kinetic.value(), m.contacts, m.max_overlap},
+        values_of(simulation, m, diameters));
   });
   return m;
 }

@@ -10,7 +10,8 @@
 
 namespace barchan {
 
-/// series.csv of a run: energies, momentum, bonds, wall forces and ring diameters; docs/run_folder.md has the columns.
+/// series.csv of a run: energies, momentum, bonds, wall forces and ring diameters;
+/// docs/run_folder.md has the columns.
 class SeriesTable {
  public:
   /// Starts the file on rank 0. Collective. Errors: RunError.

@@ -45,21 +45,25 @@ struct Columns {
   }
 };
 
-std::string piece_name(std::int64_t step, int rank) { return fmt::format("step_{:09}_rank_{}.vtp", step, rank); }
+std::string piece_name(std::int64_t step, int rank) {
+  return fmt::format("step_{:09}_rank_{}.vtp", step, rank);
+}
 
 }  // namespace
 
 Densities::Densities(const Model& model, const ParticleSet& particles) {
   for (const Material& material : model.materials) of_material_.push_back(material.density);
   for (const ParticleData& p : particles.particles) {
-    if (p.density != of_material_[static_cast<std::size_t>(p.type)]) others_.emplace_back(p.id, p.density);
+    if (p.density != of_material_[static_cast<std::size_t>(p.type)])
+      others_.emplace_back(p.id, p.density);
   }
   std::sort(others_.begin(), others_.end());
 }
 
 double Densities::of(std::int64_t id, std::int32_t type) const {
-  const auto it = std::lower_bound(others_.begin(), others_.end(), id,
-                                   [](const auto& entry, std::int64_t wanted) { return entry.first < wanted; });
+  const auto it =
+      std::lower_bound(others_.begin(), others_.end(), id,
+                       [](const auto& entry, std::int64_t wanted) { return entry.first < wanted; });
   if (it != others_.end() && it->first == id) return it->second;
   return of_material_[static_cast<std::size_t>(type)];
 }
@@ -69,7 +73,8 @@ void SnapshotWriter::write(const Simulation& simulation) {
   const std::int64_t step = simulation.step();
   const Columns columns(simulation, densities_);
   const VtpArrays arrays = columns.arrays(simulation);
-  agree(communicator, [&] { write_vtp(folder_ + "/" + piece_name(step, communicator.rank()), arrays); });
+  agree(communicator,
+        [&] { write_vtp(folder_ + "/" + piece_name(step, communicator.rank()), arrays); });
   agree(communicator, [&] {
     if (!communicator.is_root()) return;
     std::vector<std::string> pieces;

@@ -9,7 +9,8 @@
 
 namespace barchan {
 
-/// Densities [kg/m³, 2D kg/m²] that a simulation does not keep: those that differ from their material's.
+/// Densities [kg/m³, 2D kg/m²] that a simulation does not keep: those that differ from their
+/// material's.
 class Densities {
  public:
   Densities(const Model& model, const ParticleSet& particles);

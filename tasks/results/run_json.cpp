@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include <barchan/core/io/text_file.hpp>
+#include <barchan/tasks/results/run_summary.hpp>
+
+namespace barchan {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json vector_of(const Vec3& v, int dimension) {
+  Json json = Json::array();
+  for (int c = 0; c < dimension; ++c) json.push_back(v[c]);
+  return json;
+}
+
+Json walls_of(const RunSummary& s) {
+  Json walls = Json::array();
+  for (std::size_t w = 0; w < s.walls.size(); ++w) {
+    const WallState& state = s.walls[w];
+    const Json torque = s.dimension == 2 ? Json(state.torque.z()) : vector_of(state.torque, 3);
+    walls.push_back({{"name", s.wall_specs[w].name},
+                     {"active", state.is_active},
+                     {"point", vector_of(state.point, s.dimension)},
+                     {"velocity", vector_of(state.velocity, s.dimension)},
+                     {"force", vector_of(state.force, s.dimension)},
+                     {"torque", torque},
+                     {"work", state.work}});
+  }
+  return walls;
+}
+
+Json energy_of(const RunSummary& s) {
+  return {{"kinetic", s.measures.kinetic.value()},
+          {"potential", s.potential()},
+          {"elastic", s.measures.elastic.value()},
+          {"gravitational", s.measures.gravitational.value()}};
+}
+
+Json communication_of(const RunSummary& s) {
+  return {{"in_flight_seconds", s.in_flight_seconds},
+          {"exposed_seconds", s.exposed_seconds},
+          {"hidden_fraction", s.hidden_fraction()},
+          {"messages", s.messages},
+          {"bytes", s.bytes}};
+}
+
+Json momentum_of(const RunSummary& s) {
+  const auto& p = s.measures.momentum;
+  return vector_of(Vec3(p[0].value(), p[1].value(), p[2].value()), s.dimension);
+}
+
+Json machine_of(const RunSummary& s) {
+  return {{"host", s.machine.host},
+          {"hosts", s.machine.hosts},
+          {"processor", s.machine.processor},
+          {"cores", s.machine.cores},
+          {"mpi", s.machine.mpi}};
+}
+
+/// The names of the contract, in its order.
+Json contract_of(const RunSummary& s) {
+  return {{"version", s.version},
+          {"deck", s.deck},
+          {"ranks", s.ranks},
+          {"threads", s.threads},
+          {"exchange", s.exchange},
+          {"schedule", s.schedule},
+          {"contact_search", s.contact_search},
+          {"transport", s.transport},
+          {"particles", s.particles},
+          {"steps", s.steps},
+          {"dt", s.dt},
+          {"time", s.time},
+          {"loop_seconds", s.loop_seconds},
+          {"particle_steps_per_second", s.particle_steps_per_second()},
+          {"contacts", s.measures.contacts},
+          {"rebuilds", s.rebuilds},
+          {"migrations", s.migrations},
+          {"memory_bytes_per_particle",
+           s.particles > 0 ? s.memory_bytes / static_cast<double>(s.particles) : 0.0},
+          {"phases", s.phases},
+          {"communication", communication_of(s)},
+          {"energy", energy_of(s)},
+          {"state_digest", fmt::format("{:016x}", s.digest)}};
+}
+
+void add_further(const RunSummary& s, Json& json) {
+  json["interrupted"] = s.interrupted;
+  json["title"] = s.title;
+  json["dimension"] = s.dimension;
+  json["vector"] = s.vector;
+  json["skin"] = s.skin;
+  json["stable_step"] =
+      s.limit ? Json{{"seconds", s.limit->step}, {"limit", s.limit->what}} : Json(nullptr);
+  json["max_overlap"] = s.measures.max_overlap;
+  json["max_speed"] = s.measures.max_speed;
+  json["momentum"] = momentum_of(s);
+  json["bonds"] = s.measures.bonds;
+  json["broken_bonds"] = s.measures.broken_bonds;
+  json["walls"] = walls_of(s);
+  json["particles_of_ranks"] = s.owned;
+  json["machine"] = machine_of(s);
+}
+
+}  // namespace
+
+void write_run_json(const std::string& path, const RunSummary& summary) {
+  Json json = contract_of(summary);
+  add_further(summary, json);
+  OutputFile file(path);
+  file.write(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
+  file.commit();
+}
+
+}  // namespace barchan

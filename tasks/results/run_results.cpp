@@ -1,0 +1,72 @@
+#include <barchan/tasks/results/run_results.hpp>
+
+#include <algorithm>
+#include <limits>
+
+#include <barchan/tasks/results/agree.hpp>
+#include <barchan/tasks/results/final_picture.hpp>
+
+namespace barchan {
+namespace {
+
+constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+
+std::int64_t next_multiple(std::int64_t step, std::int64_t every) {
+  return every == kNever ? kNever : (step / every + 1) * every;
+}
+
+/// Rows of a series unless the deck says how often.
+std::int64_t series_interval(const Model& model) {
+  if (model.output.series_every > 0) return model.output.series_every;
+  return std::max<std::int64_t>(1, model.time.num_steps / 100);
+}
+
+}  // namespace
+
+RunResults::RunResults(Simulation& simulation, RunFolder folder, const ParticleSet& particles,
+                       ResultsSpec spec)
+    : simulation_(simulation),
+      folder_(std::move(folder)),
+      spec_(std::move(spec)),
+      series_every_(series_interval(simulation.model())),
+      snapshots_every_(simulation.model().output.snapshots_every),
+      snapshots_(folder_.file("snapshots"), Densities(simulation.model(), particles)) {
+  if (snapshots_every_ <= 0) snapshots_every_ = kNever;
+  agree(simulation.communicator(), [&] {
+    if (simulation.communicator().is_root()) folder_.begin();
+  });
+  series_.emplace(simulation, folder_.file("series.csv"), spec_.rings);
+  series_->append(simulation);
+  last_row_ = simulation.step();
+  snapshots_.write(simulation);
+}
+
+std::int64_t RunResults::next_step() const {
+  const std::int64_t step = simulation_.step();
+  return std::min(next_multiple(step, series_every_), next_multiple(step, snapshots_every_));
+}
+
+void RunResults::write() {
+  const std::int64_t step = simulation_.step();
+  if (step % series_every_ == 0 && step != last_row_) {
+    series_->append(simulation_);
+    last_row_ = step;
+  }
+  if (step % snapshots_every_ == 0 && step != snapshots_.last_step()) snapshots_.write(simulation_);
+}
+
+RunSummary RunResults::finish(bool interrupted) {
+  const std::int64_t step = simulation_.step();
+  if (step != last_row_) series_->append(simulation_);
+  last_row_ = step;
+  if (step != snapshots_.last_step()) snapshots_.write(simulation_);
+  if (simulation_.model().output.picture)
+    write_final_picture(simulation_, folder_.file("picture.png"));
+  RunSummary summary = summarize(simulation_, spec_.deck, spec_.limit, interrupted);
+  agree(simulation_.communicator(), [&] {
+    if (simulation_.communicator().is_root()) write_run_json(folder_.file("run.json"), summary);
+  });
+  return summary;
+}
+
+}  // namespace barchan

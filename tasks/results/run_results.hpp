@@ -1,0 +1,55 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <barchan/tasks/results/run_folder.hpp>
+#include <barchan/tasks/results/run_summary.hpp>
+#include <barchan/tasks/results/series_table.hpp>
+#include <barchan/tasks/results/snapshots.hpp>
+
+namespace barchan {
+
+/// What a results folder says beyond what the simulation knows.
+struct ResultsSpec {
+  std::string deck;                ///< as the user named it
+  std::vector<Ring> rings;         ///< whose diameters go into the series
+  std::optional<StepLimit> limit;  ///< smallest of step_limits()
+};
+
+/// Writes a run's folder as its deck asks for:
+///
+///     RunResults results(sim, RunFolder("case.out"), particles, {"case.toml"});
+///     while (sim.step() < end && !sim.stopped()) {
+///       sim.run(std::min(results.next_step(), end) - sim.step());
+///       results.write();
+///     }
+///     results.finish();
+///
+/// Everything is collective. Errors, the same on every rank: InputError from the constructor when
+/// the folder cannot be made; RunError when a file cannot be written.
+class RunResults {
+ public:
+  /// Clears and starts the folder, with the state as it is: RunFolder::check is the caller's.
+  /// @param simulation  lives longer
+  RunResults(Simulation& simulation, RunFolder folder, const ParticleSet& particles,
+             ResultsSpec spec);
+
+  [[nodiscard]] std::int64_t next_step()
+      const;     ///< at which something is due; after the present one
+  void write();  ///< what is due at the present step
+  /// The last row and snapshot, the picture and run.json. @return complete on rank 0
+  RunSummary finish(bool interrupted = false);
+
+ private:
+  Simulation& simulation_;
+  RunFolder folder_;
+  ResultsSpec spec_;
+  std::int64_t series_every_, snapshots_every_;
+  std::optional<SeriesTable> series_;
+  SnapshotWriter snapshots_;
+  std::int64_t last_row_ = -1;
+};
+
+}  // namespace barchan

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <barchan/tasks/simulation.hpp>
+#include <barchan/tasks/stability.hpp>
+
+namespace barchan {
+
+/// What ran where.
+struct Machine {
+  std::string host;       ///< of rank 0
+  std::string processor;  ///< its model, empty where the system does not tell
+  int cores = 0;          ///< of that host, as the system counts them
+  int hosts = 1;          ///< different ones among all ranks
+  std::string mpi;        ///< library and version
+};
+
+/// A run in numbers, over all ranks: what run.json holds.
+struct RunSummary {
+  std::string version, deck, title;
+  int dimension = 2;
+  int ranks = 1, threads = 1;  ///< threads per rank
+  std::string exchange, schedule, contact_search, transport, vector;
+  Machine machine;
+  std::int64_t particles = 0, steps = 0;
+  double dt = 0.0, time = 0.0;  ///< [s]
+  double skin = 0.0;            ///< [m]
+  std::optional<StepLimit> limit;
+  double loop_seconds = 0.0;  ///< of the slowest rank
+  std::int64_t rebuilds = 0, migrations = 0;
+  double memory_bytes = 0.0;                              ///< all ranks
+  std::map<std::string, double> phases;                   ///< seconds per rank, averaged
+  double in_flight_seconds = 0.0, exposed_seconds = 0.0;  ///< per rank, averaged
+  std::uint64_t messages = 0, bytes = 0;                  ///< sent by all ranks
+  std::vector<std::int64_t> owned;                        ///< particles of each rank
+  Measures measures;
+  std::vector<WallSpec> wall_specs;
+  std::vector<WallState> walls;
+  std::uint64_t digest = 0;
+  bool interrupted = false;
+
+  [[nodiscard]] double particle_steps_per_second() const;
+  /// Share of the time in flight in which there was work to do; 1 where nothing was in flight.
+  [[nodiscard]] double hidden_fraction() const;
+  [[nodiscard]] double potential() const;  ///< elastic and gravitational [J]
+};
+
+/// Collects the numbers of all ranks. Complete on rank 0; elsewhere times and counts are those of
+/// that rank. Collective.
+[[nodiscard]] RunSummary summarize(Simulation& simulation, const std::string& deck,
+                                   const std::optional<StepLimit>& limit, bool interrupted);
+
+/// run.json, complete or not at all. One rank. Errors: RunError.
+void write_run_json(const std::string& path, const RunSummary& summary);
+
+[[nodiscard]] std::string version();  ///< of barchan
+
+}  // namespace barchan

@@ -1,0 +1,66 @@
+#include <barchan/tasks/strip_plan.hpp>
+
+#include <algorithm>
+#include <numeric>
+#include <unordered_map>
+
+#include <barchan/comm/strips.hpp>
+#include <barchan/core/grid.hpp>
+#include <barchan/tasks/stability.hpp>
+
+namespace barchan {
+namespace {
+
+constexpr double kBondStretch = 1.1;
+
+double longest_bond(const ParticleSet& set) {
+  if (set.bonds.empty()) return 0.0;
+  std::unordered_map<std::int64_t, double> radii;
+  for (const ParticleData& p : set.particles) radii[p.id] = p.radius;
+  double longest = 0.0;
+  for (const BondData& b : set.bonds)
+    longest = std::max(longest, radii.at(b.id_a) + radii.at(b.id_b));
+  return longest;
+}
+
+template <int Dim>
+StripPlan plan_for(const Model& model, const ParticleSet& set) {
+  const double reach = search_reach(set, model.search.skin.value_or(default_skin(set)));
+  const Grid<Dim> grid(model.domain, reach, static_cast<std::int64_t>(set.particles.size()));
+  StripPlan plan;
+  plan.axis = grid.axis(0);
+  plan.slab_width = (model.domain.hi - model.domain.lo)[plan.axis] / grid.num_slabs();
+  plan.slab_counts.resize(static_cast<std::size_t>(grid.num_slabs()));
+  for (const ParticleData& p : set.particles) {
+    ++plan.slab_counts[static_cast<std::size_t>(grid.coordinate(p.position.data(), 0))];
+  }
+  return plan;
+}
+
+}  // namespace
+
+double search_reach(const ParticleSet& particles, double skin) {
+  double largest = 0.0;
+  for (const ParticleData& p : particles.particles) largest = std::max(largest, p.radius);
+  return std::max(2.0 * largest, kBondStretch * longest_bond(particles)) + skin;
+}
+
+int StripPlan::most_ranks() const {
+  return max_strips(static_cast<int>(slab_counts.size()), kMinSlabs);
+}
+
+std::vector<std::int64_t> StripPlan::strip_counts(int num_strips) const {
+  const std::vector<int> cuts = cut_equal(slab_counts, num_strips, kMinSlabs);
+  std::vector<std::int64_t> counts;
+  for (std::size_t s = 0; s + 1 < cuts.size(); ++s) {
+    counts.push_back(std::accumulate(slab_counts.begin() + cuts[s],
+                                     slab_counts.begin() + cuts[s + 1], std::int64_t{0}));
+  }
+  return counts;
+}
+
+StripPlan plan_strips(const Model& model, const ParticleSet& particles) {
+  return model.dimension == 2 ? plan_for<2>(model, particles) : plan_for<3>(model, particles);
+}
+
+}  // namespace barchan

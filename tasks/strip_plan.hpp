@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <barchan/core/model.hpp>
+
+namespace barchan {
+
+/// Slabs that a strip has at least.
+inline constexpr int kMinSlabs = 2;
+
+/// Reach of the contact search [m]: two of the largest particles, or the longest bond with a tenth
+/// of stretch, and the skin.
+[[nodiscard]] double search_reach(const ParticleSet& particles, double skin);
+
+/// How the domain is cut along its strip axis.
+struct StripPlan {
+  int axis = 0;
+  double slab_width = 0.0;                ///< [m]
+  std::vector<std::int64_t> slab_counts;  ///< particles at the start
+
+  [[nodiscard]] int most_ranks() const;
+  /// Particles of each of so many strips. @pre num_strips <= most_ranks()
+  [[nodiscard]] std::vector<std::int64_t> strip_counts(int num_strips) const;
+};
+
+/// The cuts that a run would begin with. Pure. Errors: InputError for a periodic domain shorter
+/// than two reaches.
+[[nodiscard]] StripPlan plan_strips(const Model& model, const ParticleSet& particles);
+
+}  // namespace barchan
