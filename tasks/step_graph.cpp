@@ -21,7 +21,8 @@ double seconds(Clock::time_point from, Clock::time_point to) { return std::chron
 
 template <int Dim>
 StepGraph<Dim>::StepGraph(Strip<Dim>& strip, int threads, Schedule schedule, double max_task_delay, std::uint64_t delay_seed)
-    : strip_(strip), schedule_(schedule), arena_(threads), max_task_delay_(max_task_delay), delay_state_(delay_seed * 2 + 1) {
+    : strip_(strip), schedule_(schedule), workers_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)),
+      arena_(threads), max_task_delay_(max_task_delay), delay_state_(delay_seed * 2 + 1) {
   arena_.execute([this] { build(); });
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <tbb/flow_graph.h>
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
 #include <barchan/core/lane.hpp>
@@ -75,6 +76,7 @@ class StepGraph {
 
   Strip<Dim>& strip_;
   Schedule schedule_;
+  tbb::global_control workers_;  ///< as many as asked for, also on a node with fewer cores
   tbb::task_arena arena_;
   std::unique_ptr<tbb::flow::graph> graph_;
   std::vector<LaneNodes> nodes_;
