@@ -67,6 +67,12 @@ struct Travel {
   std::int64_t outside = 0;  ///< id of a particle that is out of the domain, the largest; 0: none
 };
 
+/// Seconds of contact search, by the phase that it is part of.
+struct SearchSeconds {
+  double rebuild = 0.0;
+  double chunks = 0.0, bands = 0.0;  ///< all-pairs searches anew in every step
+};
+
 /// A lane is to a thread what a strip is to a rank: slabs [slab_begin, slab_end) with their particles, pairs and
 /// bonds, and ghosts of the slabs next to it. All functions are single-threaded and touch this lane only.
 ///
@@ -143,6 +149,8 @@ class Lane {
   [[nodiscard]] int slab_end() const { return slab_end_; }
   [[nodiscard]] std::int64_t num_pairs() const;
   [[nodiscard]] std::size_t bytes() const;
+  [[nodiscard]] const SearchSeconds& search_seconds() const { return search_seconds_; }
+  void restart_search_seconds() { search_seconds_ = {}; }
   World<Dim>& world() { return *world_; }
   [[nodiscard]] const World<Dim>& world() const { return *world_; }
 
@@ -177,6 +185,7 @@ class Lane {
 
   void cut_blocks();
   void redirect(PairList& list) const;
+  void find_owned();
   void list_across(Side side);
   void list_bonded();
   struct Slot {
@@ -207,6 +216,7 @@ class Lane {
   std::vector<Block> blocks_;
   std::vector<int> chunks_{0};  ///< first block of each chunk, and the end
   std::int32_t rows_done_ = 0;
+  SearchSeconds search_seconds_;
   int slab_begin_ = 0, slab_end_ = 0;
 
   // between begin_rebuild and restore_history

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include <barchan/core/lane.hpp>
+#include <barchan/core/stopwatch.hpp>
 
 // Candidate lists of a lane, and the blocks in which the step walks over them.
 
@@ -40,6 +41,12 @@ void Lane<Dim>::list_bonded() {
 
 template <int Dim>
 void Lane<Dim>::list_owned() {
+  const Stopwatch watch(search_seconds_.rebuild);
+  find_owned();
+}
+
+template <int Dim>
+void Lane<Dim>::find_owned() {
   const std::int32_t n = store_.num_owned;
   const std::int64_t slab_size = world_->grid.slab_size();
   bands_[Left].rows = {0, bands_[Left].exists ? cells_.first_row(slab_begin_ + 1, slab_size) : 0};
@@ -150,8 +157,9 @@ void Lane<Dim>::list_across(Side side) {
 
 template <int Dim>
 void Lane<Dim>::research_owned() {
+  const Stopwatch watch(search_seconds_.chunks);
   lists_.swap(old_lists_);
-  list_owned();
+  find_owned();
   cut_chunks(std::int64_t{1} << 60);
   for (int l = 0; l < kNumLists; ++l) {
     carry_same_rows<Dim>(old_lists_[static_cast<std::size_t>(l)], lists_[static_cast<std::size_t>(l)]);
@@ -160,6 +168,7 @@ void Lane<Dim>::research_owned() {
 
 template <int Dim>
 void Lane<Dim>::research_across(Side side) {
+  const Stopwatch watch(search_seconds_.bands);
   std::swap(bands_[side].across, old_across_[side]);
   list_across(side);
   carry_same_rows<Dim>(old_across_[side], bands_[side].across);

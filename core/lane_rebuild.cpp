@@ -2,6 +2,7 @@
 
 #include <barchan/core/bytes.hpp>
 #include <barchan/core/lane.hpp>
+#include <barchan/core/stopwatch.hpp>
 
 // Ownership and order: who leaves, who arrives, canonical order, ghosts.
 
@@ -286,6 +287,7 @@ void Lane<Dim>::take_ghosts(std::span<const std::byte> left, std::span<const std
     for (const auto& record : ghosts[side]) write_row(store_, row++, record);
     const int slab = side == Left ? (slab_begin_ - 1 + num_slabs) % num_slabs : slab_end_ % num_slabs;
     bands_[side].ghost_cells.index(world_->grid, store_, {begin, row}, slab, slab + 1);
+    const Stopwatch watch(search_seconds_.rebuild);
     list_across(side);
   }
 }

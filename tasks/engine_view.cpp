@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <limits>
 
 #include <barchan/tasks/engine.hpp>
@@ -102,7 +103,20 @@ Timings Simulation::EngineOf<Dim>::timings() const {
   Timings t;
   const StepTimes& steps = graph_->times();
   t.loop_seconds = loop_seconds_;
-  t.phases = {{"forces", steps.chunks}, {"bands", steps.bands}, {"poll", steps.poll}, {"wait", steps.exposed}, {"rebuild", rebuild_seconds_}};
+  // Lanes rebuild side by side and step on all workers: a rebuild counts once, a step's search adds up.
+  SearchSeconds search;
+  for (int l = 0; l < strip_->num_lanes(); ++l) {
+    const SearchSeconds& lane = strip_->lane(l).search_seconds();
+    search.rebuild = std::max(search.rebuild, lane.rebuild);
+    search.chunks += lane.chunks;
+    search.bands += lane.bands;
+  }
+  t.phases = {{"forces", steps.chunks - search.chunks},
+              {"bands", steps.bands - search.bands},
+              {"poll", steps.poll},
+              {"wait", steps.exposed},
+              {"rebuild", rebuild_seconds_ - search.rebuild},
+              {"search", search.chunks + search.bands + search.rebuild}};
   t.in_flight_seconds = steps.in_flight;
   t.exposed_seconds = steps.exposed;
   t.rebuilds = strip_->num_rebuilds();

@@ -69,6 +69,7 @@ void Strip<Dim>::seed(const ParticleSet& set) {
     for (int l = 0; l < num_lanes(); ++l) body(l);
   };
   exchange_ghosts(one_by_one);
+  for (const auto& lane : lanes_) lane->restart_search_seconds();  // setting up is not part of the loop
 }
 
 template <int Dim>
