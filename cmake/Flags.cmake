@@ -15,6 +15,7 @@ target_compile_definitions(barchan_house INTERFACE BARCHAN_VERSION="${PROJECT_VE
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")
   set(BARCHAN_HAS_X86_KERNELS 1)
 endif()
+set(BARCHAN_KERNEL_FLAGS -O3)  # batches are loops of constant length; -O2 leaves them in memory
 set(BARCHAN_AVX2_FLAGS -mavx2 -mfma)
 set(BARCHAN_AVX512_FLAGS
   -mavx512f -mavx512dq -mavx512vl -mavx512bw ${BARCHAN_AVX2_FLAGS} -mprefer-vector-width=512)
@@ -34,7 +35,8 @@ function(barchan_set_kernel_flags sources_variable)
     if(NOT wide)
       continue()
     elseif(BARCHAN_HAS_X86_KERNELS)
-      set_source_files_properties(${wide} PROPERTIES COMPILE_OPTIONS "${BARCHAN_${upper}_FLAGS}")
+      set_source_files_properties(${wide} PROPERTIES
+        COMPILE_OPTIONS "${BARCHAN_KERNEL_FLAGS};${BARCHAN_${upper}_FLAGS}")
     else()
       list(REMOVE_ITEM sources ${wide})
     endif()

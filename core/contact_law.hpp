@@ -59,18 +59,41 @@ struct Dashpots {
   typename S::Real cn, ct;
 };
 
+/// What the dashpots of a run depend on; the cheapest that serves all its laws. A law gives the same bits at any level.
+enum class Damping { Constant, Rate, Critical };
+
 /// The two dashpots at a given reduced mass.
-template <class S, bool UsesMass>
+template <class S, Damping D>
 [[gnu::always_inline]] inline Dashpots<S> dashpots(const LawConstants<S>& c, typename S::Real reduced_mass) {
-  if constexpr (!UsesMass) return {c.cn, c.ct};
-  const auto root = S::sqrt(reduced_mass);
-  return {c.cn + c.cn_rate * reduced_mass + c.cn_critical * root,
-          c.ct + c.ct_rate * reduced_mass + c.ct_critical * root};
+  if constexpr (D == Damping::Constant) {
+    return {c.cn, c.ct};
+  } else {
+    Dashpots<S> d{c.cn + c.cn_rate * reduced_mass, c.ct + c.ct_rate * reduced_mass};
+    if constexpr (D == Damping::Critical) {
+      const auto root = S::sqrt(reduced_mass);
+      d.cn += c.cn_critical * root;
+      d.ct += c.ct_critical * root;
+    }
+    return d;
+  }
+}
+
+/// 1/d and the reduced mass, by one division where both are wanted.
+template <class S, Damping D>
+[[gnu::always_inline]] inline typename S::Real inverse_of(typename S::Real d, typename S::Real inverse_mass,
+                                                          typename S::Real& reduced_mass) {
+  if constexpr (D == Damping::Constant) {
+    return S::set(1.0) / d;
+  } else {
+    const auto q = S::set(1.0) / (d * inverse_mass);
+    reduced_mass = q * d;
+    return q * inverse_mass;
+  }
 }
 
 /// @param spring  tangential spring [m], replaced by its value after the step; zero where the pair does not touch
 /// @return which lanes touch
-template <class S, bool UsesMass>
+template <class S, Damping D>
 [[gnu::always_inline]] inline typename S::Mask respond(const LawConstants<S>& c, const PairState<S, 2>& p,
                                                        typename S::Real dt, typename S::Real& spring,
                                                        PairForce<S, 2>& out) {
@@ -82,13 +105,13 @@ template <class S, bool UsesMass>
     spring = out.fx = out.fy = out.ft = zero;
     return touching;
   }
-  const Real d = S::sqrt(d2), inverse = S::set(1.0) / d;
+  const Real d = S::sqrt(d2);
+  Real reduced_mass = zero;
+  const Real inverse = inverse_of<S, D>(d, p.inverse_mass, reduced_mass);
   const Real nx = p.dx * inverse, ny = p.dy * inverse;
   const Real vn = p.vx * nx + p.vy * ny;
   const Real vt = (p.vy * nx - p.vx * ny) - p.surface;
-  Real reduced_mass = zero;
-  if constexpr (UsesMass) reduced_mass = S::set(1.0) / p.inverse_mass;
-  const auto damp = dashpots<S, UsesMass>(c, reduced_mass);
+  const auto damp = dashpots<S, D>(c, reduced_mass);
 
   const Real normal = damp.cn * vn - c.kn * (p.reach - d);
   const Real fn = S::select(S::less(c.cap, normal), c.cap, normal);
@@ -108,7 +131,7 @@ template <class S, bool UsesMass>
 }
 
 /// @param s  tangential spring, three components [m], kept in the tangent plane
-template <class S, bool UsesMass>
+template <class S, Damping D>
 [[gnu::always_inline]] inline typename S::Mask respond(const LawConstants<S>& c, const PairState<S, 3>& p,
                                                        typename S::Real dt, typename S::Real (&s)[3],
                                                        PairForce<S, 3>& out) {
@@ -122,17 +145,11 @@ template <class S, bool UsesMass>
     return touching;
   }
   const Real d = S::sqrt(d2);
-  Real inverse, reduced_mass = zero;
-  if constexpr (UsesMass) {  // one division for both
-    const Real q = S::set(1.0) / (d * p.inverse_mass);
-    inverse = q * p.inverse_mass;
-    reduced_mass = q * d;
-  } else {
-    inverse = S::set(1.0) / d;
-  }
+  Real reduced_mass = zero;
+  const Real inverse = inverse_of<S, D>(d, p.inverse_mass, reduced_mass);
   const Real nx = p.dx * inverse, ny = p.dy * inverse, nz = p.dz * inverse;
   const Real vn = p.vx * nx + p.vy * ny + p.vz * nz;
-  const auto damp = dashpots<S, UsesMass>(c, reduced_mass);
+  const auto damp = dashpots<S, D>(c, reduced_mass);
   const Real normal = damp.cn * vn - c.kn * (p.reach - d);
   const Real fn = S::select(S::less(c.cap, normal), c.cap, normal);
 

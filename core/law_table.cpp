@@ -41,7 +41,8 @@ void LawTable::add(const ContactConstants& k, double cap) {
   row[LawView::CnCritical] = k.cn.critical;
   row[LawView::CtCritical] = k.ct.critical;
   // A null law keeps no spring: with mu = 0 every contact slides, and 0·inverse_kt = 0 clears it.
-  uses_mass_ = uses_mass_ || k.cn.rate > 0 || k.ct.rate > 0 || k.cn.critical > 0 || k.ct.critical > 0;
+  if (k.cn.critical > 0 || k.ct.critical > 0) damping_ = Damping::Critical;
+  else if (damping_ == Damping::Constant && (k.cn.rate > 0 || k.ct.rate > 0)) damping_ = Damping::Rate;
   rows_.insert(rows_.end(), row, row + LawView::kRow);
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <barchan/core/contact_law.hpp>
 #include <barchan/core/kernels/law_view.hpp>
 #include <barchan/core/layout.hpp>
 #include <barchan/core/model.hpp>
@@ -24,7 +25,7 @@ class LawTable {
     return codes_[static_cast<std::size_t>(type_a * num_materials_ + type_b)];
   }
   [[nodiscard]] int size() const { return static_cast<int>(rows_.size()) / LawView::kRow; }
-  [[nodiscard]] bool uses_mass() const { return uses_mass_; }  ///< some dashpot depends on the reduced mass
+  [[nodiscard]] Damping damping() const { return damping_; }  ///< what some dashpot depends on
   /// Valid as long as the table is.
   [[nodiscard]] LawView view() const { return {rows_.data(), columns_.data(), size()}; }
 
@@ -32,7 +33,7 @@ class LawTable {
   void add(const ContactConstants& constants, double cap);
 
   int num_materials_ = 0;
-  bool uses_mass_ = false;
+  Damping damping_ = Damping::Constant;
   AlignedVector<double> rows_, columns_;
   std::vector<std::uint8_t> codes_;
 };

@@ -25,13 +25,21 @@ PairState<S, Dim> pair_with_wall(const ParticleStore<Dim>& s, std::int32_t row, 
   }
 }
 
-template <int Dim, bool UsesMass>
+template <int Dim, Damping D>
 PairForce<S, Dim> force_of(const LawConstants<S>& c, const PairState<S, Dim>& pair, double dt,
                            double (&spring)[Layout<Dim>::kSprings]) {
   PairForce<S, Dim> f{};
-  if constexpr (Dim == 2) respond<S, UsesMass>(c, pair, dt, spring[0], f);
-  else respond<S, UsesMass>(c, pair, dt, spring, f);
+  if constexpr (Dim == 2) respond<S, D>(c, pair, dt, spring[0], f);
+  else respond<S, D>(c, pair, dt, spring, f);
   return f;
+}
+
+template <int Dim>
+PairForce<S, Dim> respond_as(Damping damping, const LawConstants<S>& c, const PairState<S, Dim>& pair, double dt,
+                             double (&spring)[Layout<Dim>::kSprings]) {
+  if (damping == Damping::Constant) return force_of<Dim, Damping::Constant>(c, pair, dt, spring);
+  if (damping == Damping::Rate) return force_of<Dim, Damping::Rate>(c, pair, dt, spring);
+  return force_of<Dim, Damping::Critical>(c, pair, dt, spring);
 }
 
 /// The second in-plane axis of a plate: z in 2D never matters; in 3D the one across `normal` and `along`.
@@ -118,9 +126,7 @@ typename WallContacts<Dim>::Push WallContacts<Dim>::push(const ParticleStore<Dim
   const auto pair = pair_with_wall(store, contact.row, d, frame.states[w].velocity);
   const auto type = store.type[static_cast<std::size_t>(contact.row)];
   const auto law = constants_of(*frame.laws, frame.laws->code(spec.material, type));
-  Push p{frame.laws->uses_mass() ? force_of<Dim, true>(law, pair, frame.dt, contact.spring)
-                                 : force_of<Dim, false>(law, pair, frame.dt, contact.spring),
-         Vec3::Zero(), Vec3::Zero()};
+  Push p{respond_as(frame.laws->damping(), law, pair, frame.dt, contact.spring), Vec3::Zero(), Vec3::Zero()};
   for (int c = 0; c < Dim; ++c) p.at[c] = store.x(contact.row)[c] + d[c];
   p.on_wall[0] = -p.on_particle.fx;
   p.on_wall[1] = -p.on_particle.fy;

@@ -30,7 +30,7 @@ namespace barchan {
 /// fixed).
 void check_particles(const Model& model, const ParticleSet& set);
 
-inline constexpr double kGrossOverlap = 0.2;
+inline constexpr double kGrossOverlap = 0.5;
 
 /// Is the centre in the domain? Both ends count.
 [[nodiscard]] bool is_inside(const Domain& domain, const Vec3& position, int dimension);

@@ -16,16 +16,16 @@ struct BatchAvx2 {
     LawConstants<Simd> first;  ///< the only law there is
   };
 
-  template <bool UsesMass>
+  template <Damping D>
   BARCHAN_INLINE LawConstants<Simd> gather_rows(const double* rows, const std::uint8_t* code) {
     Real r[3][4];
     for (int q = 0; q < 4; ++q) {
-      for (int h = 0; h < (UsesMass ? 3 : 2); ++h) r[h][q] = Simd::load(rows + LawView::kRow * code[q] + 4 * h);
+      for (int h = 0; h < (D == Damping::Constant ? 2 : 3); ++h) r[h][q] = Simd::load(rows + LawView::kRow * code[q] + 4 * h);
     }
     Simd::transpose(r[0][0], r[0][1], r[0][2], r[0][3]);
     Simd::transpose(r[1][0], r[1][1], r[1][2], r[1][3]);
     LawConstants<Simd> c{r[0][0], r[0][1], r[0][2], r[0][3], r[1][0], r[1][1], r[1][2], r[1][3], {}, {}, {}};
-    if constexpr (UsesMass) {
+    if constexpr (D != Damping::Constant) {
       Simd::transpose(r[2][0], r[2][1], r[2][2], r[2][3]);
       c.ct_rate = r[2][0];
       c.cn_critical = r[2][1];
@@ -34,18 +34,18 @@ struct BatchAvx2 {
     return c;
   }
 
-  template <bool UsesMass, bool OneLaw>
+  template <Damping D, bool OneLaw>
   BARCHAN_INLINE Tables tables(const LawView& laws) {
     Tables t{laws.rows, {}};
     const std::uint8_t only[4] = {1, 1, 1, 1};
-    if constexpr (OneLaw) t.first = gather_rows<UsesMass>(laws.rows, only);
+    if constexpr (OneLaw) t.first = gather_rows<D>(laws.rows, only);
     return t;
   }
 
-  template <bool UsesMass, bool OneLaw>
+  template <Damping D, bool OneLaw>
   BARCHAN_INLINE LawConstants<Simd> constants(const Tables& t, const std::uint8_t* code) {
     if constexpr (OneLaw) return t.first;
-    return gather_rows<UsesMass>(t.rows, code);
+    return gather_rows<D>(t.rows, code);
   }
 
   BARCHAN_INLINE const double* at(const double* base, int stride, std::int32_t i) {
@@ -83,17 +83,17 @@ struct BatchAvx2 {
     p = {x[0], x[1], x[2], x[3], v[0], v[1], v[2], v[3], u[0], u[1], u[2]};
   }
 
-  template <bool UsesMass, int Dim>
+  template <Damping D, int Dim>
   BARCHAN_INLINE void respond_with_spring(const PairJob& job, std::int64_t k, const LawConstants<Simd>& c,
                                           const PairState<Simd, Dim>& p, Real dt, PairForce<Simd, Dim>& f) {
     if constexpr (Dim == 2) {
       Real s = Simd::load(job.spring + k);
-      respond<Simd, UsesMass>(c, p, dt, s, f);
+      respond<Simd, D>(c, p, dt, s, f);
       Simd::store(job.spring + k, s);
     } else {
       double* h = job.spring + 24 * (k / 8) + k % 8;
       Real s[3] = {Simd::load(h), Simd::load(h + 8), Simd::load(h + 16)};
-      respond<Simd, UsesMass>(c, p, dt, s, f);
+      respond<Simd, D>(c, p, dt, s, f);
       for (int e = 0; e < 3; ++e) Simd::store(h + 8 * e, s[e]);
     }
   }

@@ -22,7 +22,7 @@ struct BatchAvx512 {
                : _mm512_load_pd(laws.columns + LawView::kColumn * field);
   }
 
-  template <bool UsesMass, bool OneLaw>
+  template <Damping D, bool OneLaw>
   BARCHAN_INLINE Tables tables(const LawView& laws) {
     const auto at = [&laws](int field) __attribute__((always_inline)) { return Real(column(laws, field, OneLaw)); };
     return {laws.rows, laws.size,
@@ -31,7 +31,7 @@ struct BatchAvx512 {
              at(LawView::CnCritical), at(LawView::CtCritical)}};
   }
 
-  template <bool UsesMass, bool OneLaw>
+  template <Damping D, bool OneLaw>
   BARCHAN_INLINE LawConstants<Simd> constants(const Tables& t, const std::uint8_t* code) {
     if constexpr (OneLaw) return t.column;
     const __m512i lane = _mm512_cvtepu8_epi64(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(code)));
@@ -42,7 +42,7 @@ struct BatchAvx512 {
       const auto& c = t.column;
       LawConstants<Simd> out{look(c.kn), look(c.kt), look(c.inverse_kt), look(c.mu), c.cap, look(c.cn), look(c.ct),
                              {}, {}, {}, {}};
-      if constexpr (UsesMass) {
+      if constexpr (D != Damping::Constant) {
         out.cn_rate = look(c.cn_rate), out.ct_rate = look(c.ct_rate);
         out.cn_critical = look(c.cn_critical), out.ct_critical = look(c.ct_critical);
       }
@@ -109,17 +109,17 @@ struct BatchAvx512 {
          Real(_mm512_permutex2var_pd(h0, low, h1)), Real(_mm512_permutex2var_pd(l0, high, l1))};
   }
 
-  template <bool UsesMass, int Dim>
+  template <Damping D, int Dim>
   BARCHAN_INLINE void respond_with_spring(const PairJob& job, std::int64_t k, const LawConstants<Simd>& c,
                                           const PairState<Simd, Dim>& p, Real dt, PairForce<Simd, Dim>& f) {
     if constexpr (Dim == 2) {
       Real s = Simd::load(job.spring + k);
-      respond<Simd, UsesMass>(c, p, dt, s, f);
+      respond<Simd, D>(c, p, dt, s, f);
       Simd::store(job.spring + k, s);
     } else {
       double* h = job.spring + 3 * k;
       Real s[3] = {Simd::load(h), Simd::load(h + 8), Simd::load(h + 16)};
-      respond<Simd, UsesMass>(c, p, dt, s, f);
+      respond<Simd, D>(c, p, dt, s, f);
       for (int e = 0; e < 3; ++e) Simd::store(h + 8 * e, s[e]);
     }
   }

@@ -10,12 +10,12 @@ namespace barchan::kernels {
 struct BatchScalar {
   using Simd = simd::Scalar;
 
-  template <bool UsesMass, bool OneLaw>
+  template <Damping D, bool OneLaw>
   static const double* tables(const LawView& laws) {
     return laws.rows;
   }
 
-  template <bool UsesMass, bool OneLaw>
+  template <Damping D, bool OneLaw>
   static LawConstants<Simd> constants(const double* rows, const std::uint8_t* code) {
     const double* r = rows + LawView::kRow * *code;
     return {r[LawView::Kn],     r[LawView::Kt],     r[LawView::InverseKt],  r[LawView::Mu],
@@ -38,16 +38,16 @@ struct BatchScalar {
          u[0] + w[0], u[1] + w[1], u[2] + w[2]};
   }
 
-  template <bool UsesMass, int Dim>
+  template <Damping D, int Dim>
   [[gnu::always_inline]] static void respond_with_spring(const PairJob& job, std::int64_t k,
                                                          const LawConstants<Simd>& c, const PairState<Simd, Dim>& p,
                                                          double dt, PairForce<Simd, Dim>& f) {
     if constexpr (Dim == 2) {
-      respond<Simd, UsesMass>(c, p, dt, job.spring[k], f);
+      respond<Simd, D>(c, p, dt, job.spring[k], f);
     } else {
       double* s = job.spring + 24 * (k / 8) + k % 8;
       double t[3] = {s[0], s[8], s[16]};
-      respond<Simd, UsesMass>(c, p, dt, t, f);
+      respond<Simd, D>(c, p, dt, t, f);
       s[0] = t[0];
       s[8] = t[1];
       s[16] = t[2];

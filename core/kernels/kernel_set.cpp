@@ -38,13 +38,13 @@ VectorWidth vector_width(const std::string& name) {
 
 namespace {
 
-PairKernel pick_pairs(int dim, VectorWidth width, int flags) {
+PairKernel pick_pairs(int dim, VectorWidth width, int variant) {
 #ifdef BARCHAN_HAS_X86_KERNELS
-  if (width == VectorWidth::Avx512) return kernels::pick_avx512(dim, flags);
-  if (width == VectorWidth::Avx2) return kernels::pick_avx2(dim, flags);
+  if (width == VectorWidth::Avx512) return kernels::pick_avx512(dim, variant);
+  if (width == VectorWidth::Avx2) return kernels::pick_avx2(dim, variant);
 #endif
   (void)width;
-  return kernels::pick_scalar(dim, flags);
+  return kernels::pick_scalar(dim, variant);
 }
 
 RowKernel pick_row_kernel(int dim, VectorWidth width, bool damped) {
@@ -58,11 +58,10 @@ RowKernel pick_row_kernel(int dim, VectorWidth width, bool damped) {
 }  // namespace
 
 KernelSet make_kernels(int dim, VectorWidth width, const LawTable& laws, bool has_bonds, const PeriodicBox& box) {
-  int flags = 0;
-  if (laws.uses_mass()) flags |= kernels::kUsesMass;
-  if (box.any()) flags |= kernels::kPeriodic;
-  if (laws.size() == 2 && !has_bonds) flags |= kernels::kOneLaw;
-  return {width, pick_pairs(dim, width, flags), pick_pairs(dim, width, flags | kernels::kKeep),
+  int variant = static_cast<int>(laws.damping());
+  if (box.any()) variant |= kernels::kPeriodic;
+  if (laws.size() == 2 && !has_bonds) variant |= kernels::kOneLaw;
+  return {width, pick_pairs(dim, width, variant), pick_pairs(dim, width, variant | kernels::kKeep),
           pick_row_kernel(dim, width, false), pick_row_kernel(dim, width, true)};
 }
 

@@ -3,8 +3,8 @@
 
 namespace barchan::kernels {
 
-PairKernel pick_avx2(int dim, int flags) {
-  return dim == 2 ? pick<BatchAvx2, 2>(flags) : pick<BatchAvx2, 3>(flags);
+PairKernel pick_avx2(int dim, int variant) {
+  return dim == 2 ? pick<BatchAvx2, 2>(variant) : pick<BatchAvx2, 3>(variant);
 }
 
 }  // namespace barchan::kernels

@@ -3,8 +3,8 @@
 
 namespace barchan::kernels {
 
-PairKernel pick_avx512(int dim, int flags) {
-  return dim == 2 ? pick<BatchAvx512, 2>(flags) : pick<BatchAvx512, 3>(flags);
+PairKernel pick_avx512(int dim, int variant) {
+  return dim == 2 ? pick<BatchAvx512, 2>(variant) : pick<BatchAvx512, 3>(variant);
 }
 
 }  // namespace barchan::kernels

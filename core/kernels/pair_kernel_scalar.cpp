@@ -3,8 +3,8 @@
 
 namespace barchan::kernels {
 
-PairKernel pick_scalar(int dim, int flags) {
-  return dim == 2 ? pick<BatchScalar, 2>(flags) : pick<BatchScalar, 3>(flags);
+PairKernel pick_scalar(int dim, int variant) {
+  return dim == 2 ? pick<BatchScalar, 2>(variant) : pick<BatchScalar, 3>(variant);
 }
 
 }  // namespace barchan::kernels
