@@ -17,7 +17,8 @@ template <class S>
 }
 
 template <class B, int Dim, int F>
-void run_pairs(const PairJob& job) {
+void run_pairs(const PairJob& given) {
+  const PairJob job = given;  // a copy that no store can alias, so that its pointers stay in registers
   using S = typename B::Simd;
   constexpr auto kDamped = static_cast<Damping>(F & kDamping);
   constexpr bool kUniform = (F & kOneLaw) != 0;
