@@ -58,7 +58,8 @@ Communicator::Communicator(Communicator&& other) noexcept
       rank_(other.rank_),
       size_(other.size_),
       node_rank_(other.node_rank_),
-      node_size_(other.node_size_) {}
+      node_size_(other.node_size_),
+      tape_(std::move(other.tape_)) {}
 
 Communicator& Communicator::operator=(Communicator&& other) noexcept {
   if (this == &other) return *this;
@@ -68,6 +69,7 @@ Communicator& Communicator::operator=(Communicator&& other) noexcept {
   size_ = other.size_;
   node_rank_ = other.node_rank_;
   node_size_ = other.node_size_;
+  tape_ = std::move(other.tape_);
   return *this;
 }
 

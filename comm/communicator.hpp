@@ -2,13 +2,17 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <barchan/comm/mpi_include.hpp>
 
 namespace barchan {
+
+class Tape;
 
 /// A private duplicate of the caller's communicator: our messages never meet the caller's, and
 /// errors come back as codes (MPI_ERRORS_RETURN), which are thrown as MpiError. Every member below
@@ -32,6 +36,11 @@ class Communicator {
   [[nodiscard]] int node_size() const { return node_size_; }
   [[nodiscard]] bool is_root() const { return rank_ == 0; }
   [[nodiscard]] MPI_Comm handle() const { return comm_; }
+
+  /// What is received is recorded on this tape, or played from it, by those who ask for it
+  /// (tape.hpp); null: nothing is. Local.
+  void set_tape(std::shared_ptr<Tape> tape) { tape_ = std::move(tape); }
+  [[nodiscard]] Tape* tape() const { return tape_.get(); }
 
   /// Ends the program on every rank. For errors that only one rank knows of.
   [[noreturn]] void abort(int status) const;
@@ -67,6 +76,7 @@ class Communicator {
   int size_ = 1;
   int node_rank_ = 0;
   int node_size_ = 1;
+  std::shared_ptr<Tape> tape_;
 };
 
 }  // namespace barchan

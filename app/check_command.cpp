@@ -1,0 +1,209 @@
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include <barchan/app/commands.hpp>
+#include <barchan/app/loaded_deck.hpp>
+#include <barchan/app/readable.hpp>
+#include <barchan/tasks/simulation.hpp>
+#include <barchan/tasks/stability.hpp>
+#include <barchan/tasks/strip_plan.hpp>
+
+namespace barchan::app {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+double mass_of(const ParticleData& p, int dimension) {
+  const double r = p.radius;
+  return std::numbers::pi * p.density * (dimension == 2 ? r * r : 4.0 / 3.0 * r * r * r);
+}
+
+std::string kind_of(const ParticleSource& source) {
+  static constexpr const char* kNames[] = {"file", "lattice", "packing", "ring", "list"};
+  return kNames[source.kind.index()];
+}
+
+/// Radii and masses of some particles.
+struct Extent {
+  std::int64_t count = 0, fixed = 0;
+  double radius_lo = 1e300, radius_hi = 0.0, mass_lo = 1e300, mass_hi = 0.0, mass = 0.0;
+
+  void take(const ParticleData& p, int dimension) {
+    const double m = mass_of(p, dimension);
+    ++count;
+    fixed += p.fixed ? 1 : 0;
+    radius_lo = std::min(radius_lo, p.radius);
+    radius_hi = std::max(radius_hi, p.radius);
+    mass_lo = std::min(mass_lo, m);
+    mass_hi = std::max(mass_hi, m);
+    mass += m;
+  }
+};
+
+void print_particles(const LoadedDeck& loaded) {
+  const Model& model = loaded.deck.model;
+  Rows rows{{"source", "material", "particles", "radius [m]", "mass [kg]", "sum [kg]", "fixed"}};
+  for (std::size_t s = 0; s < loaded.deck.sources.size(); ++s) {
+    std::map<std::int32_t, Extent> by_type;
+    for (std::size_t i = loaded.begins[s]; i < loaded.begins[s + 1]; ++i) {
+      const ParticleData& p = loaded.particles.particles[i];
+      by_type[p.type].take(p, model.dimension);
+    }
+    for (const auto& [type, e] : by_type) {
+      rows.push_back({fmt::format("{} {}", s + 1, kind_of(loaded.deck.sources[s])),
+                      model.materials[static_cast<std::size_t>(type)].name, grouped(e.count),
+                      range(e.radius_lo, e.radius_hi), range(e.mass_lo, e.mass_hi),
+                      fmt::format("{:.4g}", e.mass), e.fixed > 0 ? grouped(e.fixed) : ""});
+    }
+  }
+  std::printf("Particles: %s %s, %s bonds\n%s",
+              grouped(static_cast<std::int64_t>(loaded.particles.particles.size())).c_str(),
+              model.dimension == 2 ? "disks" : "spheres",
+              grouped(static_cast<std::int64_t>(loaded.particles.bonds.size())).c_str(),
+              table(rows, 2).c_str());
+}
+
+std::string dashpot_text(const Dashpot& d) {
+  if (d.rate > 0.0) return fmt::format("{:.4g} · m/s", d.rate);
+  if (d.critical > 0.0) return fmt::format("{:.4g} · √m", d.critical);
+  return fmt::format("{:.4g}", d.constant);
+}
+
+void print_contacts(const Model& model) {
+  Rows rows{{"pair", "kn [N/m]", "kt [N/m]", "cn [N·s/m]", "ct [N·s/m]", "friction"}};
+  const int n = static_cast<int>(model.materials.size());
+  for (int a = 0; a < n; ++a) {
+    for (int b = a; b < n; ++b) {
+      const ContactConstants& law = model.contacts.at(a, b);
+      if (law.kn == 0.0) continue;  // a pair that cannot meet
+      rows.push_back({model.materials[static_cast<std::size_t>(a)].name + "–" +
+                          model.materials[static_cast<std::size_t>(b)].name,
+                      fmt::format("{:.4g}", law.kn), fmt::format("{:.4g}", law.kt),
+                      dashpot_text(law.cn), dashpot_text(law.ct), fmt::format("{:.4g}", law.mu)});
+    }
+  }
+  std::printf("Contacts:%s\n%s", model.contacts.no_tension ? "" : " (normal forces may pull)",
+              table(rows).c_str());
+}
+
+void print_walls(const Model& model) {
+  if (model.walls.empty()) return;
+  Rows rows;
+  for (const WallSpec& wall : model.walls) {
+    std::string what = wall.kind == WallKind::Plane ? "plane" : "plate";
+    if (wall.is_loaded)
+      what += fmt::format(", load {:.4g} {}, mass {:.4g} kg", wall.load,
+                          model.dimension == 2 ? "N/m" : "N/m²", wall.mass);
+    else if (!wall.velocity.isZero())
+      what += fmt::format(", moves at {:.4g} m/s", wall.velocity.norm());
+    if (wall.from_stage > 0)
+      what += ", from stage " + model.stages[static_cast<std::size_t>(wall.from_stage)].name;
+    rows.push_back(
+        {wall.name, model.materials[static_cast<std::size_t>(wall.material)].name, what});
+  }
+  std::printf("Walls:\n%s", table(rows, 3).c_str());
+}
+
+/// Bytes that the engine has for these particles on one rank.
+double engine_bytes(const LoadedDeck& loaded) {
+  Model model = loaded.deck.model;
+  model.time.allow_unstable = true;
+  RunOptions options;
+  options.threads = 1;
+  const Simulation simulation(model, loaded.particles, MPI_COMM_SELF, options);
+  return static_cast<double>(simulation.memory_bytes());
+}
+
+void print_strips(const LoadedDeck& loaded, int wanted) {
+  const StripPlan plan = plan_strips(loaded.deck.model, loaded.particles);
+  const auto num_particles = static_cast<double>(loaded.particles.particles.size());
+  const double bytes = engine_bytes(loaded) / num_particles;
+  const auto all =
+      static_cast<double>(loaded.particles.particles.capacity() * sizeof(ParticleData) +
+                          loaded.particles.bonds.capacity() * sizeof(BondData));
+  std::vector<int> ranks{1, 2, 4, 8, 16, 32};
+  if (wanted > 0) ranks = {wanted};
+  Rows rows{{"ranks", "particles a strip", "largest / mean", "memory a rank"}};
+  for (const int p : ranks) {
+    if (wanted == 0 && p > plan.most_ranks()) break;
+    const auto counts = plan.strip_counts(p);
+    const auto [lo, hi] = std::minmax_element(counts.begin(), counts.end());
+    const std::string few = grouped(*lo), many = grouped(*hi);
+    rows.push_back({std::to_string(p), few == many ? few : few + " … " + many,
+                    fmt::format("{:.2f}", static_cast<double>(*hi) * p / num_particles),
+                    readable_bytes(bytes * static_cast<double>(*hi) + all)});
+  }
+  std::printf("Strips: cut along %c in cells of %.3g m; at most %d ranks fit\n%s", "xyz"[plan.axis],
+              plan.slab_width, plan.most_ranks(), table(rows).c_str());
+  std::printf(
+      "  Memory: %.0f bytes a particle in the time loop, and %s on every rank for the start.\n",
+      bytes, readable_bytes(all).c_str());
+  std::printf("  Contact search: %s, skin %.3g m\n",
+              loaded.deck.model.search.kind == ContactSearchKind::Cells ? "cells" : "all-pairs",
+              loaded.deck.model.search.skin.value_or(default_skin(loaded.particles)));
+}
+
+void print_stages(const Model& model) {
+  std::printf("Run: %s steps of %g s, %.6g s in all\n", grouped(model.time.num_steps).c_str(),
+              model.time.step, static_cast<double>(model.time.num_steps) * model.time.step);
+  Rows rows;
+  for (const Stage& stage : model.stages) {
+    std::string until = "to the end";
+    if (stage.max_time < 1e300) until = fmt::format("at most {:g} s", stage.max_time);
+    if (stage.kinetic_ratio > 0.0)
+      until +=
+          fmt::format(", or until the kinetic-energy ratio is below {:g}", stage.kinetic_ratio);
+    const std::string damping = stage.local_damping > 0.0
+                                    ? fmt::format("local damping {:g}", stage.local_damping)
+                                    : "no local damping";
+    rows.push_back({stage.name.empty() ? "(one stage)" : stage.name, until, damping});
+  }
+  std::fputs(table(rows, 3).c_str(), stdout);
+}
+
+void print_step(const Model& model, const std::vector<StepLimit>& limits) {
+  constexpr std::size_t kMost = 12;
+  Rows rows{{"limit", "largest step [s]", "chosen / largest"}};
+  for (std::size_t i = 0; i < std::min(kMost, limits.size()); ++i) {
+    rows.push_back({limits[i].what, fmt::format("{:.3g}", limits[i].step),
+                    fmt::format("{:.3g}", model.time.step / limits[i].step)});
+  }
+  std::printf("Stable step: chosen %g s\n%s", model.time.step, table(rows).c_str());
+  if (limits.size() > kMost) std::printf("  and %zu milder limits\n", limits.size() - kMost);
+  if (limits.empty()) return;
+  const double share = model.time.step / limits.front().step;
+  if (share > 1.0 && model.time.allow_unstable) {
+    std::printf("  Warning: beyond the limit, which the deck allows (allow_unstable).\n");
+  } else if (share > kAdvisedShare && share <= 1.0) {
+    std::printf(
+        "  Warning: the step is %s of the limit of a pair; in a packing, keep to a fifth: %.2g "
+        "s.\n",
+        percent(share).c_str(), kAdvisedShare * limits.front().step);
+  } else if (share <= kAdvisedShare) {
+    std::printf("  The step is within a fifth of every limit.\n");
+  }
+}
+
+}  // namespace
+
+void check_deck(const CheckArguments& arguments) {
+  const LoadedDeck loaded = load_deck(arguments.deck, arguments.settings);
+  const Model& model = loaded.deck.model;
+  const auto limits = step_limits(model, loaded.particles);
+  std::printf("%s%s%s\n", arguments.deck.c_str(), model.title.empty() ? "" : ": ",
+              model.title.c_str());
+  print_particles(loaded);
+  print_contacts(model);
+  print_walls(model);
+  print_stages(model);
+  print_step(model, limits);
+  print_strips(loaded, arguments.ranks);
+  std::fflush(stdout);
+  check_time_step(model, limits);
+}
+
+}  // namespace barchan::app

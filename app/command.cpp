@@ -1,0 +1,63 @@
+#include <barchan/app/command.hpp>
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <optional>
+
+#include <barchan/app/command_line.hpp>
+#include <barchan/app/commands.hpp>
+#include <barchan/app/verdict.hpp>
+#include <barchan/comm/mpi_session.hpp>
+
+namespace barchan::app {
+namespace {
+
+/// Under mpirun or another starter of ranks: MPI must be joined even for a line of help, so that
+/// one rank prints.
+bool has_launcher() {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK", "PMI_RANK"}) {
+    if (std::getenv(name) != nullptr) return true;
+  }
+  return false;
+}
+
+void say(const CommandLine& line, bool is_root) {
+  if (!is_root) return;
+  std::fputs(line.text.c_str(), line.status == kDone ? stdout : stderr);
+  std::fflush(nullptr);
+}
+
+/// Commands that need one process: on rank 0, and the others hear how it went.
+int on_root(const Communicator* world, const CommandLine& line) {
+  if (world == nullptr) return with_verdict(nullptr, [&] { run_local(line); });
+  return with_verdict(world, [&] { run_local_on_root(*world, line); });
+}
+
+}  // namespace
+
+int run_barchan(int argc, char** argv) {
+  const CommandLine line = parse_command_line(argc, argv);
+  const bool is_local = line.kind != CommandKind::Run && line.kind != CommandKind::Check;
+  if (is_local && !has_launcher()) {
+    if (line.kind != CommandKind::Text) return on_root(nullptr, line);
+    say(line, true);
+    return line.status;
+  }
+  try {
+    const MpiSession session(argc, argv);
+    const Communicator world = Communicator::world();
+    if (line.kind == CommandKind::Text) {
+      say(line, world.is_root());
+      return line.status;
+    }
+    if (line.kind == CommandKind::Run)
+      return with_verdict(&world, [&] { run_deck(world, line.run); });
+    return on_root(&world, line);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "barchan: %s\n", e.what());
+    return kFailed;
+  }
+}
+
+}  // namespace barchan::app

@@ -1,0 +1,194 @@
+#include <barchan/app/command_line.hpp>
+
+#include <memory>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+
+#include <barchan/core/deck/nearest.hpp>
+#include <barchan/tasks/results/run_summary.hpp>
+#include <barchan/tasks/simulation.hpp>
+
+namespace barchan::app {
+namespace {
+
+constexpr const char* kAbout =
+    "Discrete elements on strips: particles that touch, bond and break, on any number of ranks "
+    "with the same bits.";
+constexpr const char* kFoot =
+    "Run alone or under mpirun -n RANKS. Exit status: 0 done, 1 failed while running, 2 wrong "
+    "input.\n"
+    "barchan COMMAND --help tells the options of a command.";
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+/// One of some words, else the nearest of them is named.
+CLI::Validator one_of(const std::vector<std::string>& words) {
+  return CLI::Validator(
+      [words](std::string& word) -> std::string {
+        const std::vector<std::string_view> views(words.begin(), words.end());
+        for (const auto& known : views) {
+          if (known == word) return {};
+        }
+        return fmt::format("there is no '{}' ({})", word, deck::suggest(word, views));
+      },
+      "{" + listed(words) + "}");
+}
+
+void add_settings(CLI::App& command, std::vector<std::string>& settings) {
+  command
+      .add_option("--set", settings,
+                  "Change the deck, such as time.step=1e-4 or material.soil.friction=0.4")
+      ->type_name("KEY=VALUE")
+      ->take_all()
+      ->allow_extra_args(false);
+}
+
+void add_run(CLI::App& root, RunArguments& run, std::string& schedule, std::string& search) {
+  CLI::App& command = *root.add_subcommand("run", "Run a deck and write its results into a folder");
+  command.add_option("deck", run.deck, "The deck, a TOML file")->required()->type_name("DECK");
+  command
+      .add_option("--out", run.out,
+                  "Folder of the results; default: the deck's name with .out, here")
+      ->type_name("DIR");
+  command.add_option("--steps", run.steps, "Number of steps, instead of the deck's")
+      ->type_name("N")
+      ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53));
+  add_settings(command, run.settings);
+  command
+      .add_option("--threads", run.options.threads,
+                  "Threads per rank; default: the node's cores over its ranks")
+      ->type_name("T")
+      ->check(CLI::Range(1, 1024));
+  command
+      .add_option("--exchange", run.options.exchange,
+                  "How ranks exchange halos; default: " + exchange_choices().front())
+      ->check(one_of(exchange_choices()));
+  command
+      .add_option("--schedule", schedule,
+                  "Overlap communication with work (default), or one after the other")
+      ->check(one_of({"overlap", "sequential"}));
+  command
+      .add_option("--contact-search", search, "How contacts are found, instead of the deck's way")
+      ->check(one_of({"cells", "all-pairs"}));
+  command
+      .add_option("--vector", run.options.vector,
+                  "Width of vectors; default: auto, the widest here")
+      ->check(one_of({"auto", "scalar", "avx2", "avx512"}));
+  command.add_flag("--force", run.force, "Replace the results in a folder that exists");
+  command.add_flag("--quiet", run.quiet, "Print nothing but errors");
+}
+
+void add_others(CLI::App& root, CommandLine& line) {
+  CLI::App& check = *root.add_subcommand(
+      "check", "Say what a deck would do, and whether its time step is stable");
+  check.add_option("deck", line.check.deck, "The deck, a TOML file")->required()->type_name("DECK");
+  check.add_option("--ranks", line.check.ranks, "Show the strips of so many ranks")
+      ->type_name("P")
+      ->check(CLI::Range(1, 1 << 20));
+  add_settings(check, line.check.settings);
+
+  CLI::App& info =
+      *root.add_subcommand("info", "Say what a file or folder is, and its key figures");
+  info.add_option("path", line.info_path, "A run folder, snapshot, particle file, series or deck")
+      ->required()
+      ->type_name("PATH");
+
+  CLI::App& convert =
+      *root.add_subcommand("convert", "Convert particles: .csv, LAMMPS data (.data, .lmp), .vtp");
+  convert.add_option("in", line.convert.in, "File to read; also a .pvtp of all ranks")
+      ->required()
+      ->type_name("IN");
+  convert.add_option("out", line.convert.out, "File to write; its ending tells the format")
+      ->required()
+      ->type_name("OUT");
+  convert
+      .add_option("--dimension", line.convert.dimension,
+                  "2 or 3; default: 2 when all lies in the plane z = 0")
+      ->type_name("D")
+      ->check(CLI::IsMember({2, 3}));
+  convert.add_flag("--force", line.convert.force, "Replace a file that exists");
+}
+
+/// The option or command that was probably meant; empty when none comes close.
+std::string meant(const CLI::App& root, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : root.get_subcommands({})) {
+    const bool is_used = command->parsed();
+    if (word.rfind('-', 0) != 0) names.push_back(command->get_name());
+    if (!is_used) continue;
+    for (const CLI::Option* option : command->get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+  }
+  const std::vector<std::string_view> views(names.begin(), names.end());
+  return std::string(deck::nearest(word.substr(0, word.find('=')), views));
+}
+
+std::string explain(const CLI::App& root, const CLI::ParseError& error, int argc,
+                    const char* const* argv) {
+  std::string text = error.what();
+  const auto end = text.find_last_not_of("\n ");
+  text.resize(end == std::string::npos ? 0 : end + 1);
+  std::string remedy = "see --help";
+  const auto rest = root.remaining(true);
+  if (argc <= 1)
+    text = "no command";
+  else if (!rest.empty()) {
+    text = (rest.front().rfind('-', 0) == 0 ? "unknown option '" : "unexpected argument '") +
+           rest.front() + "'";
+    const std::string name = meant(root, rest.front());
+    if (!name.empty()) remedy = "did you mean '" + name + "'?";
+  }
+  (void)argv;
+  return fmt::format("barchan: {} ({})\n", text, remedy);
+}
+
+CommandKind kind_of(const CLI::App& root) {
+  if (root.got_subcommand("run")) return CommandKind::Run;
+  if (root.got_subcommand("check")) return CommandKind::Check;
+  if (root.got_subcommand("info")) return CommandKind::Info;
+  return CommandKind::Convert;
+}
+
+}  // namespace
+
+CommandLine parse_command_line(int argc, const char* const* argv) {
+  CommandLine line;
+  CLI::App root(kAbout, "barchan");
+  root.footer(kFoot);
+  root.require_subcommand(1);
+  root.fallthrough(false);
+  root.set_version_flag("--version", "barchan " + version());
+  std::string schedule, search;
+  add_run(root, line.run, schedule, search);
+  add_others(root, line);
+  for (CLI::App* command : root.get_subcommands({}))
+    command->set_version_flag("--version", "barchan " + version());
+  try {
+    root.parse(argc, argv);
+  } catch (const CLI::Success& asked) {
+    std::ostringstream out, ignored;
+    root.exit(asked, out, ignored);
+    line.text = out.str();
+    return line;
+  } catch (const CLI::ParseError& error) {
+    line.status = kWrongInput;
+    line.text = explain(root, error, argc, argv);
+    return line;
+  }
+  line.kind = kind_of(root);
+  if (schedule == "sequential") line.run.options.schedule = Schedule::Sequential;
+  if (!search.empty())
+    line.run.options.search =
+        search == "cells" ? ContactSearchKind::Cells : ContactSearchKind::AllPairs;
+  return line;
+}
+
+}  // namespace barchan::app

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <barchan/tasks/run_options.hpp>
+
+namespace barchan::app {
+
+inline constexpr int kDone = 0;
+inline constexpr int kFailed = 1;
+inline constexpr int kWrongInput = 2;
+
+enum class CommandKind { Text, Run, Check, Info, Convert };
+
+struct RunArguments {
+  std::string deck;
+  std::string out;  ///< empty: by the deck's name
+  std::optional<std::int64_t> steps;
+  std::vector<std::string> settings;  ///< key=value
+  RunOptions options;
+  bool force = false;
+  bool quiet = false;
+};
+
+struct CheckArguments {
+  std::string deck;
+  std::vector<std::string> settings;
+  int ranks = 0;  ///< 0: a few usual ones
+};
+
+struct ConvertArguments {
+  std::string in, out;
+  int dimension = 0;  ///< 0: 2 when everything lies in the plane z = 0
+  bool force = false;
+};
+
+/// What the user asked for.
+struct CommandLine {
+  CommandKind kind = CommandKind::Text;
+  int status = kDone;  ///< Text: the exit status
+  std::string text;    ///< Text: help, version or what is wrong
+  RunArguments run;
+  CheckArguments check;
+  std::string info_path;
+  ConvertArguments convert;
+};
+
+/// Never throws: what is wrong becomes a text with status 2.
+CommandLine parse_command_line(int argc, const char* const* argv);
+
+}  // namespace barchan::app

@@ -1,0 +1,191 @@
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include <barchan/app/commands.hpp>
+#include <barchan/app/loaded_deck.hpp>
+#include <barchan/app/readable.hpp>
+#include <barchan/core/error.hpp>
+#include <barchan/core/io/particle_file.hpp>
+#include <barchan/core/io/text_file.hpp>
+#include <barchan/core/io/vtp.hpp>
+
+namespace fs = std::filesystem;
+
+namespace barchan::app {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+using Json = nlohmann::json;
+
+void print(const std::string& path, const std::string& what, const Rows& rows) {
+  std::printf("%s: %s\n%s", path.c_str(), what.c_str(), table(rows, 2).c_str());
+}
+
+std::string word(const Json& json, const char* key) {
+  const auto it = json.find(key);
+  if (it == json.end()) return "?";
+  return it->is_string() ? it->get<std::string>() : it->dump();
+}
+
+double number(const Json& json, const char* key) {
+  const auto it = json.find(key);
+  return it != json.end() && it->is_number() ? it->get<double>() : 0.0;
+}
+
+std::int64_t whole(const Json& json, const char* key) {
+  return static_cast<std::int64_t>(number(json, key));
+}
+
+Json read_run_json(const std::string& path) {
+  try {
+    Json json = Json::parse(read_text_file(path));
+    if (json.is_object() && json.contains("state_digest")) return json;
+  } catch (const Json::exception&) {  // falls through to the same message
+  }
+  throw InputError(SourcePlace{path, 0, 0}, "is no run.json of barchan",
+                   "give a run's folder or its run.json");
+}
+
+Rows run_rows(const Json& run) {
+  const Json communication = run.value("communication", Json::object());
+  const Json energy = run.value("energy", Json::object());
+  Rows rows{
+      {"deck", word(run, "deck")},
+      {"particles", grouped(whole(run, "particles"))},
+      {"ranks", word(run, "ranks") + " × " + word(run, "threads") + " threads"},
+      {"exchange",
+       word(run, "exchange") + " (" + word(run, "transport") + "), " + word(run, "schedule")},
+      {"steps", fmt::format("{} of {:g} s: {:.6g} s simulated", grouped(whole(run, "steps")),
+                            number(run, "dt"), number(run, "time"))},
+      {"loop", fmt::format("{}, {} particle-steps/s", readable_seconds(number(run, "loop_seconds")),
+                           readable_rate(number(run, "particle_steps_per_second")))},
+      {"hidden", percent(number(communication, "hidden_fraction")) + " of communication"},
+      {"contacts", grouped(whole(run, "contacts"))},
+      {"energy", fmt::format("kinetic {:.4g} J, potential {:.4g} J", number(energy, "kinetic"),
+                             number(energy, "potential"))},
+      {"digest", word(run, "state_digest")},
+      {"version", word(run, "version")}};
+  if (run.value("interrupted", false)) rows.push_back({"note", "interrupted before its last step"});
+  return rows;
+}
+
+void show_folder(const std::string& path) {
+  const std::string json = path + "/run.json";
+  if (!fs::exists(json)) {
+    const bool is_started = fs::exists(path + "/series.csv");
+    throw InputError(
+        SourcePlace{path, 0, 0},
+        is_started ? "a run that has not ended: run.json is missing" : "is no folder of a run",
+        is_started ? "wait for it, or run it again"
+                   : "give a run's folder, a snapshot, a particle file or a deck");
+  }
+  Rows rows = run_rows(read_run_json(json));
+  if (fs::exists(path + "/snapshots/run.pvd")) {
+    rows.push_back({"snapshots", std::to_string(read_pvd(path + "/snapshots/run.pvd").size())});
+  }
+  print(path, "a run's results", rows);
+}
+
+void show_pvd(const std::string& path) {
+  const auto entries = read_pvd(path);
+  Rows rows{{"snapshots", std::to_string(entries.size())}};
+  if (!entries.empty())
+    rows.push_back({"time", range(entries.front().time, entries.back().time) + " s"});
+  print(path, "snapshots over time", rows);
+}
+
+void add_instant(const std::string& path, Rows& rows) {
+  std::string piece = path;
+  if (path.ends_with(".pvtp")) {
+    const auto pieces = read_pvtp(path);
+    rows.push_back({"ranks", std::to_string(pieces.size())});
+    if (pieces.empty()) return;
+    piece = pieces.front();
+  }
+  const VtpPiece read = read_vtp(piece);
+  rows.push_back({"time", fmt::format("{:.6g} s, step {}", read.time, grouped(read.step))});
+}
+
+void show_particles(const std::string& path) {
+  const ParticleFile file = read_particles(path);
+  Rows rows;
+  if (path.ends_with("vtp")) add_instant(path, rows);
+  double r_lo = 1e300, r_hi = 0.0, speed = 0.0;
+  Vec3 lo = Vec3::Constant(1e300), hi = Vec3::Constant(-1e300);
+  std::int32_t types = 0;
+  for (const ParticleData& p : file.particles) {
+    r_lo = std::min(r_lo, p.radius);
+    r_hi = std::max(r_hi, p.radius);
+    lo = lo.cwiseMin(p.position);
+    hi = hi.cwiseMax(p.position);
+    speed = std::max(speed, p.velocity.norm());
+    types = std::max(types, p.type + 1);
+  }
+  rows.push_back({"particles", grouped(static_cast<std::int64_t>(file.particles.size()))});
+  rows.push_back({"types", std::to_string(types)});
+  rows.push_back({"radius", range(r_lo, r_hi) + " m"});
+  for (int c = 0; c < 3; ++c)
+    rows.push_back({std::string(1, "xyz"[c]), range(lo[c], hi[c]) + " m"});
+  rows.push_back({"speed", fmt::format("at most {:.4g} m/s", speed)});
+  const char* what = path.ends_with("vtp") ? "a snapshot"
+                                           : (path.ends_with(".data") || path.ends_with(".lmp")
+                                                  ? "a LAMMPS data file"
+                                                  : "a table of particles");
+  print(path, what, rows);
+}
+
+bool show_series(const std::string& path) {
+  const std::string text = read_text_file(path);
+  if (!text.starts_with("step,time,")) return false;
+  LineReader lines(text, path);
+  std::string_view line, last;
+  std::int64_t rows = -1;
+  while (lines.next(line)) {
+    ++rows;
+    last = line;
+  }
+  Rows shown{{"rows", grouped(rows)}};
+  if (rows > 0) shown.push_back({"last", fmt::format("step {}", last.substr(0, last.find(',')))});
+  print(path, "a series over time", shown);
+  return true;
+}
+
+void show_deck(const std::string& path) {
+  const Deck deck = read_deck(path);
+  const Model& m = deck.model;
+  print(path, "a deck",
+        {{"title", m.title},
+         {"dimension", std::to_string(m.dimension)},
+         {"materials", std::to_string(m.materials.size())},
+         {"sources", std::to_string(deck.sources.size()) + " of particles"},
+         {"walls", std::to_string(m.walls.size())},
+         {"stages", std::to_string(m.stages.size())},
+         {"steps", fmt::format("{} of {:g} s", grouped(m.time.num_steps), m.time.step)},
+         {"more", "barchan check " + path}});
+}
+
+}  // namespace
+
+void show_info(const std::string& path) {
+  if (!fs::exists(path))
+    throw InputError(SourcePlace{path, 0, 0}, "there is no such file or folder",
+                     "give the path of one");
+  if (fs::is_directory(path)) return show_folder(path);
+  if (path.ends_with(".toml")) return show_deck(path);
+  if (path.ends_with(".pvd")) return show_pvd(path);
+  if (path.ends_with(".json"))
+    return print(path, "a run in numbers", run_rows(read_run_json(path)));
+  if (path.ends_with(".csv") && show_series(path)) return;
+  for (const char* ending : {".csv", ".data", ".lmp", ".vtp", ".pvtp"}) {
+    if (path.ends_with(ending)) return show_particles(path);
+  }
+  throw InputError(SourcePlace{path, 0, 0}, "this kind of file is not known",
+                   "give a run's folder, .toml, .csv, .data, .lmp, .vtp, .pvtp, .pvd or run.json");
+}
+
+}  // namespace barchan::app

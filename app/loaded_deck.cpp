@@ -1,0 +1,17 @@
+#include <barchan/app/loaded_deck.hpp>
+
+#include <barchan/core/generators/make_particles.hpp>
+
+namespace barchan::app {
+
+LoadedDeck load_deck(const std::string& path, const std::vector<std::string>& settings) {
+  std::vector<DeckOverride> overrides;
+  for (const std::string& setting : settings) overrides.push_back(parse_override(setting));
+  LoadedDeck loaded;
+  loaded.deck = read_deck(path, overrides);
+  loaded.particles = make_particles(loaded.deck.model, loaded.deck.sources, loaded.begins);
+  check_particles(loaded.deck.model, loaded.particles);
+  return loaded;
+}
+
+}  // namespace barchan::app

@@ -1,0 +1,83 @@
+#include <barchan/app/progress.hpp>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <span>
+#include <string>
+
+#include <fmt/format.h>
+
+#include <barchan/app/readable.hpp>
+
+namespace barchan::app {
+namespace {
+
+constexpr double kTerminalInterval = 0.25;  // [s]
+constexpr double kPipeInterval = 10.0;
+
+}  // namespace
+
+Progress::Progress(const Simulation& simulation, bool is_quiet)
+    : simulation_(simulation),
+      is_silent_(is_quiet),
+      is_terminal_(::isatty(STDERR_FILENO) != 0),
+      interval_(is_terminal_ ? kTerminalInterval : kPipeInterval),
+      last_step_(simulation.step()) {}
+
+std::int64_t Progress::most_steps() {
+  const std::int64_t rest = simulation_.model().time.num_steps - simulation_.step();
+  if (is_silent_) return rest;
+  std::array<std::int64_t, 1> steps{1};
+  if (simulation_.communicator().is_root()) {
+    const double loop = simulation_.timings().loop_seconds;
+    const auto done = static_cast<double>(simulation_.step());
+    if (loop > 0.0) steps[0] = static_cast<std::int64_t>(done / loop * interval_);
+    // Grows gently, since the first steps tell little.
+    steps[0] =
+        std::clamp<std::int64_t>(steps[0], 1, std::max<std::int64_t>(16, 2 * simulation_.step()));
+  }
+  simulation_.communicator().bcast(std::as_writable_bytes(std::span(steps)));
+  return std::min(steps[0], rest);
+}
+
+void Progress::update() {
+  if (is_silent_ || !simulation_.communicator().is_root()) return;
+  const double now = std::chrono::duration<double>(Clock::now() - begin_).count();
+  if (now - last_seconds_ >= 0.9 * interval_) print(now);
+}
+
+void Progress::print(double now) {
+  const Timings t = simulation_.timings();
+  const std::int64_t step = simulation_.step(), end = simulation_.model().time.num_steps;
+  const double loop = t.loop_seconds - last_loop_;
+  const double rate = loop > 0.0 ? static_cast<double>(step - last_step_) / loop : 0.0;
+  const double left =
+      static_cast<double>(end - step) * now / static_cast<double>(std::max<std::int64_t>(1, step));
+  std::string line = fmt::format(
+      "step {} of {} ({}), {} particle-steps/s, {} left", grouped(step), grouped(end),
+      percent(static_cast<double>(step) / static_cast<double>(end)),
+      readable_rate(rate * static_cast<double>(simulation_.num_particles())), readable_time(left));
+  if (t.in_flight_seconds > 0.0) {
+    line +=
+        fmt::format(", {} of communication hidden",
+                    percent(std::clamp(1.0 - t.exposed_seconds / t.in_flight_seconds, 0.0, 1.0)));
+  }
+  std::fprintf(stderr, is_terminal_ ? "\r\033[K%s" : "%s\n", line.c_str());
+  std::fflush(stderr);
+  has_line_ = is_terminal_;
+  last_seconds_ = now;
+  last_loop_ = t.loop_seconds;
+  last_step_ = step;
+}
+
+void Progress::clear() {
+  if (!has_line_) return;
+  std::fputs("\r\033[K", stderr);
+  std::fflush(stderr);
+  has_line_ = false;
+}
+
+}  // namespace barchan::app

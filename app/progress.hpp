@@ -1,0 +1,35 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+#include <barchan/tasks/simulation.hpp>
+
+namespace barchan::app {
+
+/// Tells on stderr how far a run has come: on a terminal one line that changes a few times a
+/// second, else a line every ten seconds. Rank 0 prints; times and hidden share are its own.
+class Progress {
+ public:
+  Progress(const Simulation& simulation, bool is_quiet);
+
+  /// How many steps to run until the next update() should be; the same on every rank. Collective.
+  [[nodiscard]] std::int64_t most_steps();
+  void update();
+  void clear();  ///< leaves an empty line on a terminal
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void print(double now);
+
+  const Simulation& simulation_;
+  bool is_silent_;    ///< all ranks alike
+  bool is_terminal_;  ///< rank 0 knows
+  double interval_;   ///< [s]
+  Clock::time_point begin_ = Clock::now();
+  double last_seconds_ = 0.0, last_loop_ = 0.0;  ///< at the last line
+  std::int64_t last_step_;
+  bool has_line_ = false;
+};
+
+}  // namespace barchan::app

@@ -1,0 +1,86 @@
+#include <algorithm>
+#include <csignal>
+#include <optional>
+
+#include <barchan/app/commands.hpp>
+#include <barchan/app/loaded_deck.hpp>
+#include <barchan/app/progress.hpp>
+#include <barchan/app/summary_table.hpp>
+#include <barchan/app/verdict.hpp>
+#include <barchan/core/error.hpp>
+#include <barchan/tasks/results/agree.hpp>
+#include <barchan/tasks/results/run_results.hpp>
+
+namespace barchan::app {
+namespace {
+
+/// The first signal ends the run after its step; a second one of the same kind ends the program as
+/// usual.
+extern "C" void on_signal(int signal) {
+  Simulation::request_stop();
+  std::signal(signal, SIG_DFL);
+}
+
+void catch_signals() {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+}
+
+RunFolder folder_of(const RunArguments& arguments) {
+  return arguments.out.empty() ? RunFolder::of_deck(arguments.deck) : RunFolder(arguments.out);
+}
+
+/// Everything that can be wrong with the input and is known before the engine: the same verdict on
+/// all ranks.
+LoadedDeck load(const Communicator& world, const RunArguments& arguments,
+                std::optional<StepLimit>& limit) {
+  on_rank_zero(world, [&] { folder_of(arguments).check(arguments.force); });
+  LoadedDeck loaded;
+  agree(world, [&] {
+    loaded = load_deck(arguments.deck, arguments.settings);
+    Model& model = loaded.deck.model;
+    if (arguments.steps) model.time.num_steps = *arguments.steps;
+    const auto limits = step_limits(model, loaded.particles);
+    check_time_step(model, limits);
+    if (!limits.empty()) limit = limits.front();
+  });
+  return loaded;
+}
+
+void advance(Simulation& simulation, RunResults& results, Progress& progress) {
+  const std::int64_t end = simulation.model().time.num_steps;
+  while (simulation.step() < end && !simulation.stopped()) {
+    const std::int64_t due = std::min(results.next_step(), end) - simulation.step();
+    try {
+      simulation.run(std::min(due, progress.most_steps()));
+    } catch (const std::exception& e) {
+      progress.clear();
+      end_run(simulation.communicator(), e.what());
+    }
+    progress.update();
+    results.write();
+  }
+  progress.clear();
+}
+
+}  // namespace
+
+void run_deck(const Communicator& world, const RunArguments& arguments) {
+  std::optional<StepLimit> limit;
+  LoadedDeck loaded = load(world, arguments, limit);
+  const Model& model = loaded.deck.model;
+  Simulation simulation(model, loaded.particles, world.handle(), arguments.options);
+  const std::vector<Ring> rings = find_rings(loaded.deck.sources, loaded.begins, loaded.particles);
+  catch_signals();
+  const RunFolder folder = folder_of(arguments);
+  RunResults results(simulation, folder, loaded.particles, {arguments.deck, rings, limit});
+  loaded.particles = {};
+
+  Progress progress(simulation, arguments.quiet);
+  advance(simulation, results, progress);
+  const bool interrupted = simulation.step() < model.time.num_steps;
+  const RunSummary summary = results.finish(interrupted);
+  if (world.is_root() && !arguments.quiet) print_summary(summary, folder, model);
+}
+
+}  // namespace barchan::app

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include <barchan/comm/communicator.hpp>
+
+namespace barchan::app {
+
+/// Does the work of a command and turns what it throws into one message on stderr and an exit
+/// status.
+///
+/// An InputError is the same on every rank: rank 0 prints it, all return 2. Any other error may be
+/// known to one rank only, while the others wait for it: it is printed once and all ranks are ended
+/// with status 1.
+/// @param world  null without MPI
+int with_verdict(const Communicator* world, const std::function<void()>& work);
+
+/// Ends all ranks with status 1 after one message, before anything unwinds that might wait for the
+/// others; alone it throws RunError. For errors inside the time loop.
+[[noreturn]] void end_run(const Communicator& world, const std::string& what);
+
+/// Does local work on rank 0 alone; every rank throws what it threw. Collective.
+void on_rank_zero(const Communicator& world, const std::function<void()>& work);
+
+}  // namespace barchan::app

@@ -1,0 +1,124 @@
+#include <barchan/comm/auto_exchange.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <barchan/comm/clock.hpp>
+#include <barchan/core/error.hpp>
+
+namespace barchan {
+namespace {
+
+constexpr double budget_seconds = 0.06;  // for each measurement of a candidate
+constexpr double equal_share = 1.1;
+constexpr double equal_seconds = 0.5e-6;
+
+struct Measured {
+  std::unique_ptr<Exchange> exchange;
+  ExchangeCandidate candidate;
+};
+
+/// The largest message and the least work of all ranks.
+void agree_pattern(const Communicator& communicator, std::size_t& bytes, WorkPattern& work) {
+  double maxima[2] = {static_cast<double>(bytes), -work.seconds};
+  communicator.allreduce_max(std::span<double>(maxima));
+  std::int64_t chunks = -work.num_chunks;
+  communicator.allreduce_max(std::span(&chunks, 1));
+  bytes = static_cast<std::size_t>(maxima[0]);
+  work = {-maxima[1], static_cast<int>(-chunks)};
+}
+
+Measured measure(const std::string& name, const Communicator& communicator, Neighbours neighbours,
+                 const ExchangeOptions& options, std::size_t bytes, const WorkPattern& work) {
+  Measured measured;
+  measured.candidate.name = name;
+  try {
+    measured.exchange = make_exchange(name, communicator, neighbours, options);
+  } catch (const InputError& e) {
+    measured.candidate.obstacle = e.what();
+    return measured;
+  }
+  ExchangeProbe probe(communicator, neighbours, *measured.exchange, bytes, budget_seconds);
+  measured.candidate.exposed = probe.exposed(work);
+  measured.candidate.half_round_trip = probe.half_round_trip();
+  return measured;
+}
+
+bool needs_window(const std::string& name) {
+  return name == "put-flag" || name == "put-inband" || name == "get" || name == "pscw";
+}
+
+/// The preferred among those that are as good as the best.
+std::size_t best_of(const std::vector<ExchangeCandidate>& candidates) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& c : candidates) {
+    if (c.obstacle.empty()) least = std::min(least, c.exposed);
+  }
+  const double good = std::max(least * equal_share, least + equal_seconds);
+  const auto found = std::ranges::find_if(candidates, [good](const ExchangeCandidate& c) {
+    return c.obstacle.empty() && c.exposed <= good;
+  });
+  return static_cast<std::size_t>(found - candidates.begin());
+}
+
+std::string in_microseconds(double seconds) {
+  return fmt::format("{:.3g} µs", 1e6 * seconds);
+}
+
+std::string reason_for(const ExchangeChoice& choice, const ExchangeCandidate& best) {
+  std::string others;
+  for (const auto& c : choice.candidates) {
+    if (c.name == best.name || !c.obstacle.empty()) continue;
+    others +=
+        fmt::format("{}{} {}", others.empty() ? "" : ", ", c.name, in_microseconds(c.exposed));
+  }
+  return fmt::format("{} adds {} to a step of {} with messages of {} bytes{}{}", best.name,
+                     in_microseconds(best.exposed), in_microseconds(choice.work.seconds),
+                     choice.bytes, others.empty() ? "" : "; the others: ", others);
+}
+
+}  // namespace
+
+const std::vector<std::string>& auto_candidates() {
+  static const std::vector<std::string> names{"shared", "put-inband", "put-flag",
+                                              "get",    "isend",      "pscw"};
+  return names;
+}
+
+SelectedExchange select_exchange(const Communicator& communicator, Neighbours neighbours,
+                                 const ExchangeOptions& options, std::size_t bytes,
+                                 WorkPattern work) {
+  const std::int64_t begin = now_ns();
+  agree_pattern(communicator, bytes, work);
+  ExchangeOptions sized = options;
+  sized.halo_bytes = std::max(options.halo_bytes, bytes);
+  ExchangeChoice choice;
+  choice.is_measured = true;
+  choice.bytes = bytes;
+  choice.work = work;
+  std::vector<std::unique_ptr<Exchange>> exchanges;
+  for (const std::string& name : auto_candidates()) {
+    if (needs_window(name) && !choice.hint.empty()) {  // what one lacks, all lack
+      choice.candidates.push_back({name, choice.hint});
+      exchanges.emplace_back();
+      continue;
+    }
+    Measured measured = measure(name, communicator, neighbours, sized, bytes, work);
+    if (needs_window(name)) choice.hint = measured.candidate.obstacle;
+    choice.candidates.push_back(measured.candidate);
+    exchanges.push_back(std::move(measured.exchange));
+  }
+  const std::size_t best = best_of(choice.candidates);
+  choice.name = choice.candidates[best].name;
+  choice.reason = reason_for(choice, choice.candidates[best]);
+  std::unique_ptr<Exchange> chosen = std::move(exchanges[best]);
+  exchanges.clear();  // collective, in the same order on every rank
+  choice.seconds = 1e-9 * static_cast<double>(now_ns() - begin);
+  communicator.allreduce_max(std::span(&choice.seconds, 1));
+  return {std::move(chosen), choice};
+}
+
+}  // namespace barchan
