@@ -126,7 +126,7 @@ class Lane {
   void cut_chunks(std::int64_t chunk_pairs);
 
   // ---- between steps, ghosts up to date (lane_measure.cpp)
-  [[nodiscard]] Measures measure(const Vec3& gravity) const;
+  [[nodiscard]] Measures measure(const Vec3& gravity);
   [[nodiscard]] Travel travel() const;  ///< since the last rebuild; needs no ghosts
   [[nodiscard]] std::uint64_t digest() const;
 
@@ -142,8 +142,13 @@ class Lane {
   [[nodiscard]] std::vector<WallSums> measure_walls() const;
   Band& band(Side side) { return bands_[side]; }
   [[nodiscard]] const Band& band(Side side) const { return bands_[side]; }
-  [[nodiscard]] const PairList& list(ListName name) const { return lists_[name]; }
-  PairList& list(ListName name) { return lists_[name]; }
+  /// Pairs and history; packed history is put back in its place first (unpack_history).
+  PairList& list(ListName name) {
+    unpack_history();
+    return lists_[name];
+  }
+  /// Brings the springs of touching pairs back to their candidates' places. Cheap when nothing is packed.
+  void unpack_history();
   [[nodiscard]] std::int64_t num_leaving() const { return std::count_if(goes_.begin(), goes_.end(), [](auto g) { return g != 0; }); }
   [[nodiscard]] int slab_begin() const { return slab_begin_; }
   [[nodiscard]] int slab_end() const { return slab_end_; }
@@ -167,15 +172,25 @@ class Lane {
   struct Block {
     int list = 0;
     std::int64_t begin = 0, end = 0;
+    std::int64_t num_touching = 0;
+    std::int32_t prefetch_begin = 0, prefetch_end = 0;  ///< rows that blocks before this one have not met
     std::int32_t final_row = 0;  ///< rows before this one are complete after the block
     bool has_extras = false;     ///< bonds, walls or external forces among them
+    bool is_packed = false;      ///< works on its touching pairs, packed to its front
   };
+  static constexpr std::int64_t kBlockPairs = 32 * kBatch;  ///< a block's rows stay in the first cache
 
   [[nodiscard]] int direction_of(int slab) const;  ///< 0 here, 1 left, 2 right
   [[nodiscard]] bool computes_bond(std::int32_t bond) const;
   [[nodiscard]] std::pair<bool, bool> bond_leaves(std::int32_t bond) const;
   PairJob job(PairList& list) const;
-  void run_block(const Block& block);
+  void run_block(Block& block);
+  void prefetch(const Block& block) const;
+  void run_touching(Block& block, PairJob pairs);
+  void pack(Block& block, const std::uint8_t* masks);
+  [[nodiscard]] bool packs() const {
+    return world_->kernels.narrow != nullptr && world_->search == ContactSearchKind::Cells;
+  }
   void finish_rows(std::int32_t begin, std::int32_t end, bool has_extras);
   void replay(Rows rows);
   void compute_bonds(typename BondSet<Dim>::Group group);
@@ -184,6 +199,7 @@ class Lane {
   void research_across(Side side);
 
   void cut_blocks();
+  void prepare_packing();
   void redirect(PairList& list) const;
   void find_owned();
   void list_across(Side side);

@@ -10,6 +10,7 @@ namespace barchan {
 template <int Dim>
 void Lane<Dim>::collect_loose(std::vector<std::vector<LooseContact>>& leaving, const std::vector<std::int8_t>& goes,
                               const std::vector<std::int32_t>& number) {
+  unpack_history();
   lists_.swap(old_lists_);
   const auto loosen = [&](const PairList& list) {
     for (std::int64_t k = 0; k < list.size(); ++k) {

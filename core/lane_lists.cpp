@@ -8,8 +8,6 @@
 namespace barchan {
 namespace {
 
-constexpr std::int64_t kBlock = 32 * kBatch;  // pairs; small enough that a block's rows stay in the first cache
-
 /// History of an earlier list of the same rows; both lists are sorted by (i, j).
 template <int Dim>
 void carry_same_rows(const PairList& from, PairList& to) {
@@ -89,11 +87,12 @@ void Lane<Dim>::cut_blocks() {
   const std::int32_t first = bands_[Left].rows.end, last = bands_[Right].rows.begin;
   for (int l = 0; l < kNumLists; ++l) {
     const PairList& list = lists_[static_cast<std::size_t>(l)];
-    for (std::int64_t k = 0; k < list.size(); k += kBlock) {
-      const std::int64_t end = std::min(k + kBlock, list.size());
+    for (std::int64_t k = 0; k < list.size(); k += kBlockPairs) {
+      const std::int64_t end = std::min(k + kBlockPairs, list.size());
       // Rows before the next pair's first row are complete; the waste row pads, and comes last.
       const std::int32_t next = end < list.size() ? std::min(list.i[static_cast<std::size_t>(end)], last) : first;
-      blocks_.push_back({l, k, end, next, true});
+      Block& block = blocks_.emplace_back();
+      block.list = l, block.begin = k, block.end = end, block.final_row = next;
     }
   }
   // After its last list a row has all it gets here; lists follow one another in row order.
@@ -103,9 +102,32 @@ void Lane<Dim>::cut_blocks() {
     if (block->end == list.size()) block->final_row = std::max(first, done);
     done = std::min(done, std::min(list.i[static_cast<std::size_t>(block->begin)], last));
   }
-  if (blocks_.empty() || blocks_.back().final_row < last) blocks_.push_back({Owned, 0, 0, last, true});
+  if (blocks_.empty() || blocks_.back().final_row < last) blocks_.emplace_back(), blocks_.back().list = Owned, blocks_.back().final_row = last;
   for (Block& block : blocks_) block.final_row = std::clamp(block.final_row, first, last);
   chunks_ = {0, static_cast<int>(blocks_.size())};
+  if (packs()) prepare_packing();
+}
+
+template <int Dim>
+void Lane<Dim>::prepare_packing() {
+  PairList& list = lists_[Owned];
+  list.packed_i.resize(list.i.size());
+  list.packed_j.resize(list.i.size());
+  list.packed_code.resize(list.i.size());
+  list.mask.resize(list.i.size() / kBatch);
+  // While a block is worked on, the rows that the next one meets first are on their way to the cache.
+  std::int32_t met = 0, to_come = 0;
+  Block* before = nullptr;
+  for (Block& block : blocks_) {
+    if (block.list != Owned) continue;
+    for (std::int64_t k = block.begin; k < block.end; ++k) {
+      const std::int32_t j = list.j[static_cast<std::size_t>(k)];
+      if (j < store_.num_owned) to_come = std::max(to_come, j + 1);
+    }
+    if (before != nullptr) before->prefetch_begin = met, before->prefetch_end = to_come;
+    met = to_come;
+    before = &block;
+  }
 }
 
 template <int Dim>

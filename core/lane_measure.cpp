@@ -88,7 +88,8 @@ void measure_wall_contacts(const Lane<Dim>& lane, Measures& m) {
 }  // namespace
 
 template <int Dim>
-Measures Lane<Dim>::measure(const Vec3& gravity) const {
+Measures Lane<Dim>::measure(const Vec3& gravity) {
+  unpack_history();
   Measures m;
   measure_motion(store_, gravity, m);
   for (const PairList& list : lists_) measure_pairs(*this, list, m);
@@ -147,8 +148,8 @@ std::uint64_t Lane<Dim>::digest() const {
   return sum;
 }
 
-template Measures Lane<2>::measure(const Vec3&) const;
-template Measures Lane<3>::measure(const Vec3&) const;
+template Measures Lane<2>::measure(const Vec3&);
+template Measures Lane<3>::measure(const Vec3&);
 template std::vector<WallSums> Lane<2>::measure_walls() const;
 template std::vector<WallSums> Lane<3>::measure_walls() const;
 template Travel Lane<2>::travel() const;

@@ -48,15 +48,32 @@ void Lane<Dim>::run_chunk(int chunk) {
 }
 
 template <int Dim>
-void Lane<Dim>::run_block(const Block& block) {
+void Lane<Dim>::run_block(Block& block) {
   PairList& list = lists_[static_cast<std::size_t>(block.list)];
   PairJob pairs = job(list);
   pairs.begin = block.begin;
   pairs.end = block.end;
-  (list.result.empty() ? world_->kernels.pairs : world_->kernels.pairs_kept)(pairs);
+  if (!list.result.empty()) {
+    world_->kernels.pairs_kept(pairs);
+  } else if (packs()) {
+    prefetch(block);
+    run_touching(block, pairs);
+  } else {
+    world_->kernels.pairs(pairs);
+  }
   if (block.final_row > rows_done_) {
     finish_rows(rows_done_, block.final_row, block.has_extras);
     rows_done_ = block.final_row;
+  }
+}
+
+template <int Dim>
+void Lane<Dim>::prefetch(const Block& block) const {
+  for (std::int32_t i = block.prefetch_begin; i < block.prefetch_end; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    __builtin_prefetch(store_.motion.data() + at * L::kMotion);
+    __builtin_prefetch(store_.force.data() + at * L::kForce, 1);
+    if constexpr (Dim == 3) __builtin_prefetch(store_.spin.data() + at * L::kSpin);
   }
 }
 
@@ -149,7 +166,10 @@ template <int Dim>
 void Lane<Dim>::compute_bonds(typename BondSet<Dim>::Group group) {
   const auto broken = bonds_.compute(group, store_, world_->bond_laws, world_->grid.box(), world_->dt);
   for (const std::int32_t bond : broken) unbind(bond);
-  if (!broken.empty()) list_bonded();
+  if (!broken.empty()) {
+    list_bonded();
+    unpack_history();  // laws have changed
+  }
 }
 
 template <int Dim>

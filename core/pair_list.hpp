@@ -14,6 +14,10 @@ struct PairList {
   AlignedVector<std::int32_t> row_i, row_j;  ///< where forces go, if not to i and j
   AlignedVector<double> result;              ///< a force record each, if kept
 
+  // Touching pairs of each block, packed to its front (lane_touching.cpp); empty where every candidate is worked on.
+  AlignedVector<std::int32_t> packed_i, packed_j;
+  AlignedVector<std::uint8_t> packed_code, mask;
+
   [[nodiscard]] std::int64_t size() const { return static_cast<std::int64_t>(i.size()); }
   void clear() {
     i.clear();
@@ -44,13 +48,17 @@ struct PairList {
     return const_cast<PairList*>(this)->springs<Dim>(k);
   }
   template <int Dim>
+  [[nodiscard]] double* springs_of_block(std::int64_t begin) {
+    return spring.data() + begin * Layout<Dim>::kSprings;
+  }
+  template <int Dim>
   [[nodiscard]] bool has_spring(std::int64_t k) const {
     const double* s = springs<Dim>(k);
     if constexpr (Dim == 2) return s[0] != 0.0;
     return s[0] != 0.0 || s[kBatch] != 0.0 || s[2 * kBatch] != 0.0;
   }
   [[nodiscard]] std::size_t bytes() const {
-    return 4 * (i.capacity() + j.capacity() + row_i.capacity() + row_j.capacity()) + code.capacity() +
+    return 4 * (i.capacity() + j.capacity() + row_i.capacity() + row_j.capacity() + packed_i.capacity() + packed_j.capacity()) + code.capacity() + packed_code.capacity() + mask.capacity() +
            8 * (spring.capacity() + result.capacity());
   }
 };

@@ -83,6 +83,17 @@ struct BatchAvx2 {
     p = {x[0], x[1], x[2], x[3], v[0], v[1], v[2], v[3], u[0], u[1], u[2]};
   }
 
+  template <int Dim>
+  BARCHAN_INLINE void gather_positions(const PairJob& job, std::int64_t k, Real& dx, Real& dy, Real& dz, Real& reach) {
+    const Real sign = {-1, -1, Dim == 2 ? 1.0 : -1.0, 1};
+    Real x[4];
+    for (int q = 0; q < 4; ++q) {
+      x[q] = combine(Simd::load(at(job.motion, 8, job.i[k + q])), sign, Simd::load(at(job.motion, 8, job.j[k + q])));
+    }
+    Simd::transpose(x[0], x[1], x[2], x[3]);
+    dx = x[0], dy = x[1], dz = x[2], reach = x[Dim];
+  }
+
   template <Damping D, int Dim>
   BARCHAN_INLINE void respond_with_spring(const PairJob& job, std::int64_t k, const LawConstants<Simd>& c,
                                           const PairState<Simd, Dim>& p, Real dt, PairForce<Simd, Dim>& f) {

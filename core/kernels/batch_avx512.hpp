@@ -75,6 +75,18 @@ struct BatchAvx512 {
     o[3] = Real(_mm512_shuffle_f64x2(q0, q1, 0x88)), o[7] = Real(_mm512_shuffle_f64x2(q0, q1, 0xdd));
   }
 
+  /// The columns of eight rows of four.
+  BARCHAN_INLINE void transpose_halves(const __m256d (&a)[8], Real (&o)[4]) {
+    __m512d w[4];
+    for (int q = 0; q < 4; ++q) w[q] = _mm512_insertf64x4(_mm512_castpd256_pd512(a[q]), a[q + 4], 1);
+    const __m512d l0 = _mm512_unpacklo_pd(w[0], w[1]), l1 = _mm512_unpacklo_pd(w[2], w[3]);
+    const __m512d h0 = _mm512_unpackhi_pd(w[0], w[1]), h1 = _mm512_unpackhi_pd(w[2], w[3]);
+    const __m512i low = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
+    const __m512i high = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
+    o[0] = Real(_mm512_permutex2var_pd(l0, low, l1)), o[1] = Real(_mm512_permutex2var_pd(h0, low, h1));
+    o[2] = Real(_mm512_permutex2var_pd(l0, high, l1)), o[3] = Real(_mm512_permutex2var_pd(h0, high, h1));
+  }
+
   /// Records a·sign + b of eight pairs; sign is ±1, so the fused operation rounds once, like a difference.
   BARCHAN_INLINE void differences(const PairJob& job, std::int64_t k, __m512d sign, Real (&column)[8]) {
     __m512d row[8];
@@ -99,14 +111,22 @@ struct BatchAvx512 {
       s[q] = _mm256_add_pd(_mm256_load_pd(job.spin + 4 * wide(job.i[k + q])),
                            _mm256_load_pd(job.spin + 4 * wide(job.j[k + q])));
     }
-    __m512d w[4];
-    for (int q = 0; q < 4; ++q) w[q] = _mm512_insertf64x4(_mm512_castpd256_pd512(s[q]), s[q + 4], 1);
-    const __m512d l0 = _mm512_unpacklo_pd(w[0], w[1]), l1 = _mm512_unpacklo_pd(w[2], w[3]);
-    const __m512d h0 = _mm512_unpackhi_pd(w[0], w[1]), h1 = _mm512_unpackhi_pd(w[2], w[3]);
-    const __m512i low = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
-    const __m512i high = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
-    p = {c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], Real(_mm512_permutex2var_pd(l0, low, l1)),
-         Real(_mm512_permutex2var_pd(h0, low, h1)), Real(_mm512_permutex2var_pd(l0, high, l1))};
+    Real u[4];
+    transpose_halves(s, u);
+    p = {c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], u[0], u[1], u[2]};
+  }
+
+  template <int Dim>
+  BARCHAN_INLINE void gather_positions(const PairJob& job, std::int64_t k, Real& dx, Real& dy, Real& dz, Real& reach) {
+    const __m256d sign = _mm256_setr_pd(-1, -1, Dim == 2 ? 1 : -1, 1);
+    __m256d x[8];
+    for (int q = 0; q < 8; ++q) {
+      x[q] = _mm256_fmadd_pd(_mm256_load_pd(job.motion + 8 * wide(job.i[k + q])), sign,
+                             _mm256_load_pd(job.motion + 8 * wide(job.j[k + q])));
+    }
+    Real c[4];
+    transpose_halves(x, c);
+    dx = c[0], dy = c[1], dz = c[2], reach = c[Dim];
   }
 
   template <Damping D, int Dim>

@@ -38,6 +38,16 @@ struct BatchScalar {
          u[0] + w[0], u[1] + w[1], u[2] + w[2]};
   }
 
+  template <int Dim>
+  static void gather_positions(const PairJob& job, std::int64_t k, double& dx, double& dy, double& dz, double& reach) {
+    const double* a = job.motion + 8 * static_cast<std::int64_t>(job.i[k]);
+    const double* b = job.motion + 8 * static_cast<std::int64_t>(job.j[k]);
+    dx = b[0] - a[0];
+    dy = b[1] - a[1];
+    dz = Dim == 3 ? b[2] - a[2] : 0.0;
+    reach = a[Dim] + b[Dim];
+  }
+
   template <Damping D, int Dim>
   [[gnu::always_inline]] static void respond_with_spring(const PairJob& job, std::int64_t k,
                                                          const LawConstants<Simd>& c, const PairState<Simd, Dim>& p,

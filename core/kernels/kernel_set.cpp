@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <barchan/core/error.hpp>
+#include <barchan/core/kernels/narrow_loop.hpp>
 #include <barchan/core/kernels/pair_loop.hpp>
 #include <barchan/core/kernels/row_loop.hpp>
 
@@ -47,6 +48,17 @@ PairKernel pick_pairs(int dim, VectorWidth width, int variant) {
   return kernels::pick_scalar(dim, variant);
 }
 
+NarrowKernel pick_narrow(int dim, VectorWidth width, bool periodic) {
+#ifdef BARCHAN_HAS_X86_KERNELS
+  if (width == VectorWidth::Avx512) return kernels::pick_narrow_avx512(dim, periodic);
+  if (width == VectorWidth::Avx2) return kernels::pick_narrow_avx2(dim, periodic);
+#endif
+  (void)width;
+  (void)dim;
+  (void)periodic;
+  return nullptr;  // pair by pair, a pair that does not touch costs no more than here
+}
+
 RowKernel pick_row_kernel(int dim, VectorWidth width, bool damped) {
 #ifdef BARCHAN_HAS_X86_KERNELS
   if (width != VectorWidth::Scalar) return kernels::pick_rows_avx2(dim, damped);
@@ -61,7 +73,9 @@ KernelSet make_kernels(int dim, VectorWidth width, const LawTable& laws, bool ha
   int variant = static_cast<int>(laws.damping());
   if (box.any()) variant |= kernels::kPeriodic;
   if (laws.size() == 2 && !has_bonds) variant |= kernels::kOneLaw;
-  return {width, pick_pairs(dim, width, variant), pick_pairs(dim, width, variant | kernels::kKeep),
+  // In 2D almost every candidate of a packing touches; in 3D about half do.
+  const NarrowKernel narrow = dim == 3 ? pick_narrow(dim, width, box.any()) : nullptr;
+  return {width, pick_pairs(dim, width, variant), pick_pairs(dim, width, variant | kernels::kKeep), narrow,
           pick_row_kernel(dim, width, false), pick_row_kernel(dim, width, true)};
 }
 

@@ -14,6 +14,7 @@ struct KernelSet {
   VectorWidth width = VectorWidth::Scalar;
   PairKernel pairs = nullptr;       ///< sums into rows
   PairKernel pairs_kept = nullptr;  ///< the same, and keeps every pair's force
+  NarrowKernel narrow = nullptr;    ///< null where testing every candidate in `pairs` is cheaper
   RowKernel rows = nullptr;
   RowKernel rows_damped = nullptr;  ///< with local damping
 };

@@ -32,6 +32,8 @@ struct PairJob {
 };
 
 using PairKernel = void (*)(const PairJob&);
+/// Writes one byte per batch: bit q is set where candidate q of the batch touches.
+using NarrowKernel = void (*)(const PairJob&, std::uint8_t* masks);
 
 enum class VectorWidth { Scalar = 1, Avx2 = 4, Avx512 = 8 };
 

@@ -19,6 +19,7 @@ struct Scalar {
   static Mask less(Real a, Real b) { return a < b; }
   static Real select(Mask m, Real a, Real b) { return m ? a : b; }
   static bool any(Mask m) { return m; }
+  static unsigned bits(Mask m) { return m ? 1U : 0U; }
 };
 
 }  // namespace barchan::simd

@@ -1,0 +1,101 @@
+#include <algorithm>
+#include <cstring>
+
+#include <barchan/core/lane.hpp>
+
+// Where many candidates do not touch, a block of the owned list works on its touching pairs alone: a narrow phase
+// tells which they are, and pairs, laws and springs are packed to the front of the block. As long as the same pairs
+// touch, nothing is moved.
+//
+//   candidates   | a b c d e f g h | …        springs, unpacked   | a – c – – f g – |
+//   mask         | 1 0 1 0 0 1 1 0 |          springs, packed     | a c f g | …
+
+namespace barchan {
+namespace {
+
+template <int Dim>
+void copy_spring(const double* from, std::int64_t k, double* to, std::int64_t a) {
+  constexpr int kSprings = Layout<Dim>::kSprings;
+  const double* s = from + k / kBatch * kBatch * kSprings + k % kBatch;
+  double* t = to + a / kBatch * kBatch * kSprings + a % kBatch;
+  for (int c = 0; c < kSprings; ++c) t[c * kBatch] = s[c * kBatch];
+}
+
+template <int Dim>
+void clear_spring(double* to, std::int64_t a) {
+  double* t = to + a / kBatch * kBatch * Layout<Dim>::kSprings + a % kBatch;
+  for (int c = 0; c < Layout<Dim>::kSprings; ++c) t[c * kBatch] = 0.0;
+}
+
+bool has_bit(const std::uint8_t* masks, std::int64_t k) { return (masks[k / 8] >> (k % 8) & 1) != 0; }
+
+}  // namespace
+
+template <int Dim>
+void Lane<Dim>::run_touching(Block& block, PairJob pairs) {
+  PairList& list = lists_[Owned];
+  std::array<std::uint8_t, kBlockPairs / kBatch> masks;
+  world_->kernels.narrow(pairs, masks.data());
+  const std::int64_t bytes = (block.end - block.begin) / kBatch;
+  std::uint8_t* known = list.mask.data() + block.begin / kBatch;
+  if (!block.is_packed || std::memcmp(masks.data(), known, static_cast<std::size_t>(bytes)) != 0) pack(block, masks.data());
+  pairs.i = pairs.row_i = list.packed_i.data();
+  pairs.j = pairs.row_j = list.packed_j.data();
+  pairs.code = list.packed_code.data();
+  pairs.end = block.begin + (block.num_touching + kBatch - 1) / kBatch * kBatch;
+  world_->kernels.pairs(pairs);
+}
+
+template <int Dim>
+void Lane<Dim>::pack(Block& block, const std::uint8_t* masks) {
+  PairList& list = lists_[Owned];
+  std::uint8_t* known = list.mask.data() + block.begin / kBatch;
+  double* springs = list.template springs_of_block<Dim>(block.begin);
+  alignas(64) double packed[kBlockPairs * L::kSprings];
+  std::int64_t old = 0, now = 0;
+  const std::int64_t size = block.end - block.begin;
+  for (std::int64_t k = 0; k < size; ++k) {
+    const bool was = !block.is_packed || has_bit(known, k);
+    if (has_bit(masks, k)) {
+      const auto from = static_cast<std::size_t>(block.begin + k), to = static_cast<std::size_t>(block.begin + now);
+      list.packed_i[to] = list.i[from];
+      list.packed_j[to] = list.j[from];
+      list.packed_code[to] = list.code[from];
+      if (was) copy_spring<Dim>(springs, block.is_packed ? old : k, packed, now);
+      else clear_spring<Dim>(packed, now);
+      ++now;
+    }
+    old += was ? 1 : 0;
+  }
+  block.num_touching = now;
+  for (; now % kBatch != 0; ++now) {
+    const auto to = static_cast<std::size_t>(block.begin + now);
+    list.packed_i[to] = store_.waste();
+    list.packed_j[to] = store_.waste() + 1;
+    list.packed_code[to] = 0;
+    clear_spring<Dim>(packed, now);
+  }
+  std::copy_n(packed, now * L::kSprings, springs);
+  std::copy_n(masks, size / kBatch, known);
+  block.is_packed = true;
+}
+
+template <int Dim>
+void Lane<Dim>::unpack_history() {
+  for (Block& block : blocks_) {
+    if (!block.is_packed) continue;
+    double* springs = lists_[Owned].template springs_of_block<Dim>(block.begin);
+    const std::uint8_t* known = lists_[Owned].mask.data() + block.begin / kBatch;
+    std::int64_t a = block.num_touching;
+    for (std::int64_t k = block.end - block.begin - 1; k >= 0; --k) {
+      if (has_bit(known, k)) copy_spring<Dim>(springs, --a, springs, k);
+      else clear_spring<Dim>(springs, k);
+    }
+    block.is_packed = false;
+  }
+}
+
+template class Lane<2>;
+template class Lane<3>;
+
+}  // namespace barchan
