@@ -1,5 +1,6 @@
 #include <barchan/core/law_table.hpp>
 
+#include <algorithm>
 #include <limits>
 
 #include <barchan/core/error.hpp>
@@ -22,6 +23,8 @@ LawTable::LawTable(const ContactTable& contacts) : num_materials_(contacts.num_m
     }
   }
   columns_.assign(LawView::kNumFields * LawView::kColumn, 0.0);
+  // All laws have the same cap, and kernels take it lane by lane without a look-up: no lane may lack it.
+  std::fill_n(columns_.begin() + LawView::Cap * LawView::kColumn, int{LawView::kColumn}, cap);
   for (int c = 0; c < size() && c < LawView::kColumn; ++c) {
     for (int f = 0; f < LawView::kNumFields; ++f) columns_[f * LawView::kColumn + c] = rows_[c * LawView::kRow + f];
   }

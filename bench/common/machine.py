@@ -1,0 +1,73 @@
+"""What a result was measured on: processor, caches, flags, compiler, commit, load. No host names, no dates."""
+import os
+import re
+import subprocess
+
+SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+FLAGS = ("sse2", "avx", "avx2", "fma", "avx512f", "avx512dq", "avx512vl", "avx512bw")
+
+
+def output_of(command):
+    """Standard output of a command; empty where there is no such command or it fails."""
+    try:
+        done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    except OSError:
+        return ""
+    return done.stdout.strip() if done.returncode == 0 else ""
+
+
+def lscpu():
+    fields = {}
+    for line in output_of(["lscpu"]).splitlines():
+        name, _, value = line.partition(":")
+        fields[name.strip()] = value.strip()
+    return fields
+
+
+def num_cores():
+    """Cores that this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+def memory_gib():
+    with open("/proc/meminfo") as file:
+        return round(int(file.readline().split()[1]) / 2**20, 1)
+
+
+def commit():
+    """Short hash of the sources, with '+' where those of the program differ from it."""
+    git = ["git", "-C", SOURCE]
+    name = output_of([*git, "rev-parse", "--short=12", "HEAD"]) or "unknown"
+    parts = ["core", "comm", "tasks", "app", "cmake", "CMakeLists.txt"]
+    changed = output_of([*git, "status", "--porcelain", "--", *parts])
+    return name + ("+" if changed else "")
+
+
+def describe():
+    cpu = lscpu()
+    have = cpu.get("Flags", "").split()
+    caches = {name: cpu[f"{name} cache"] for name in ("L1d", "L1i", "L2", "L3") if f"{name} cache" in cpu}
+    return {
+        "processor": cpu.get("Model name", "unknown"),
+        "family": cpu.get("CPU family", ""),
+        "model": cpu.get("Model", ""),
+        "cores": num_cores(),
+        "virtual": cpu.get("Hypervisor vendor", "") or "no",
+        "caches": caches,
+        "flags": [flag for flag in FLAGS if flag in have],
+        "memory_gib": memory_gib(),
+        "compiler": output_of(["c++", "--version"]).splitlines()[0] if output_of(["c++", "--version"]) else "",
+        "mpi": (output_of(["mpirun", "--version"]).splitlines() or [""])[0],
+    }
+
+
+def slug():
+    """A folder's name for results of machines of this kind, such as amd-epyc-f26-m2-2-cores."""
+    machine = describe()
+    text = f"{machine['processor']} f{machine['family']} m{machine['model']} {machine['cores']} cores"
+    return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")
+
+
+def load():
+    """Mean number of processes that wanted a core over the last minute; above 0.5 figures are not worth much."""
+    return os.getloadavg()[0]
