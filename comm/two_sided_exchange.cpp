@@ -13,12 +13,13 @@ namespace barchan {
 TwoSidedExchange::TwoSidedExchange(const Communicator& communicator, Neighbours neighbours)
     : SlotExchange(communicator, neighbours), num_exceptions_(std::uncaught_exceptions()) {}
 
-// A send may still read its buffer. Where the others cannot be waited for, the buffers are left to
-// the library.
+// A send may still read its buffer, and a receive still fill one. Where the others cannot be waited
+// for, the buffers are left to the library.
 TwoSidedExchange::~TwoSidedExchange() {
   if (!is_mpi_initialized()) return;
   if (std::uncaught_exceptions() > num_exceptions_) {
     static_cast<void>(std::make_unique<Slots>(std::move(outboxes_)).release());
+    static_cast<void>(std::make_unique<Slots>(std::move(inboxes_)).release());
     return;
   }
   for (auto& pair : outboxes_) {

@@ -34,12 +34,12 @@ void Lane<Dim>::seed(int slab_begin, int slab_end, std::span<const ParticleData>
     std::fill_n(x, 8, 0.0);
     for (int c = 0; c < Dim; ++c) {
       x[c] = p.position[c];
-      x[L::kVelocity + c] = p.velocity[c];
+      x[L::kVelocity + c] = p.fixed ? 0.0 : p.velocity[c];
     }
     x[L::kRadius] = p.radius;
     x[L::kInverseMass] = p.fixed ? 0.0 : 1.0 / mass_of<Dim>(p);
     if constexpr (Dim == 3) std::fill_n(store_.u(i), 4, 0.0);
-    for (int c = 0; c < kSpins<Dim>; ++c) store_.u(i)[c] = p.radius * p.omega[Dim == 2 ? 2 : c];
+    for (int c = 0; c < kSpins<Dim>; ++c) store_.u(i)[c] = p.fixed ? 0.0 : p.radius * p.omega[Dim == 2 ? 2 : c];
     world_->grid.wrap(x);
     store_.id[at] = p.id;
     store_.key[at] = world_->grid.key(x);

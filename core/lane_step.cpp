@@ -6,6 +6,12 @@
 #include <barchan/core/lane.hpp>
 
 namespace barchan {
+namespace {
+
+/// Time over which springs stretch: in the first step, known by its half kick, nothing has moved yet.
+double spring_step(const StepFrame& frame, double dt) { return frame.kick < dt ? 0.0 : dt; }
+
+}  // namespace
 
 template <int Dim>
 PairJob Lane<Dim>::job(PairList& list) const {
@@ -23,7 +29,7 @@ PairJob Lane<Dim>::job(PairList& list) const {
   job.result = list.result.data();
   job.begin = 0;
   job.end = list.size();
-  job.dt = world_->dt;
+  job.dt = spring_step(frame_, world_->dt);
   job.box = world_->grid.box();
   job.laws = world_->laws.view();
   return job;
@@ -81,7 +87,8 @@ template <int Dim>
 void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extras) {
   if (has_extras || !store_.external.empty()) {
     bonds_.add_to_rows(store_, begin, end);
-    walls_.add_to_rows(store_, {world_->wall_specs, world_->walls, &world_->laws, world_->dt}, wall_sums_, begin, end);
+    const double dt = spring_step(frame_, world_->dt);
+    walls_.add_to_rows(store_, {world_->wall_specs, world_->walls, &world_->laws, dt}, wall_sums_, begin, end);
     if (!store_.external.empty()) {
       const auto from = static_cast<std::size_t>(begin) * L::kForce, to = static_cast<std::size_t>(end) * L::kForce;
       for (std::size_t c = from; c < to; ++c) store_.force[c] += store_.external[c];
@@ -164,7 +171,7 @@ void Lane<Dim>::replay(Rows rows) {
 
 template <int Dim>
 void Lane<Dim>::compute_bonds(typename BondSet<Dim>::Group group) {
-  const auto broken = bonds_.compute(group, store_, world_->bond_laws, world_->grid.box(), world_->dt);
+  const auto broken = bonds_.compute(group, store_, world_->bond_laws, world_->grid.box(), spring_step(frame_, world_->dt));
   for (const std::int32_t bond : broken) unbind(bond);
   if (!broken.empty()) {
     list_bonded();
