@@ -49,6 +49,7 @@ void StepGraph<Dim>::run(const StepFrame& frame) {
   frame_ = frame;
   arena_.execute([this] {
     lanes_left_ = strip_.num_lanes();
+    left_is_done_ = false;
     for (const Side side : kSides) arrived_[at(side)] = !strip_.awaits(side);
     if (schedule_ == Schedule::Sequential) await_all();
     for (int l = 0; l < strip_.num_lanes(); ++l) {
@@ -98,10 +99,12 @@ void StepGraph<Dim>::run_band(int l, Side side) {
     if (is_outer) lock.lock();
     strip_.finish_band(l, side);
     strip_.send_band(l, side);
+    if (is_outer && side == Side::Left) left_is_done_ = true;
     if (is_outer) sent_ = Clock::now();
   }
   nodes.band_seconds += seconds(begin, Clock::now());
   if (side == Side::Left && has_band(l, Side::Right)) nodes.right->try_put(Signal());
+  if (side == Side::Left && strip_.is_outer(l, side) && strip_.scheme_returns() && lanes_left_ == 0 && !arrived_[1]) drain_->try_put(0);
 }
 
 template <int Dim>
@@ -111,10 +114,16 @@ void StepGraph<Dim>::signal(int l, Side side) {
 }
 
 template <int Dim>
+bool StepGraph<Dim>::may_poll(Side side) const {
+  return side == Side::Left || !strip_.scheme_returns() || !strip_.neighbours().has(Side::Left) || left_is_done_;
+}
+
+template <int Dim>
 bool StepGraph<Dim>::poll_sides() {
   bool all = true;
   for (const Side side : kSides) {
     if (arrived_[at(side)]) continue;
+    if (!may_poll(side)) continue;
     if (!strip_.poll(side)) {
       all = false;
       continue;

@@ -68,6 +68,7 @@ class StepGraph {
   void run_band(int lane, Side side);
   void try_poll();
   bool poll_sides();
+  [[nodiscard]] bool may_poll(Side side) const;
   void signal(int lane, Side side);
   void drain();
   void await_all();
@@ -85,6 +86,7 @@ class StepGraph {
   std::mutex comm_mutex_;  ///< one thread at a time in the exchange
   std::array<std::atomic<bool>, 2> arrived_{};
   std::atomic<int> lanes_left_{0};
+  std::atomic<bool> left_is_done_{false};
   StepTimes times_;
   Clock::time_point sent_{};
   double poll_seconds_ = 0.0;

@@ -44,6 +44,7 @@ class Strip {
   [[nodiscard]] bool is_outer(int l, Side side) const {
     return side == Side::Left ? l == 0 : l + 1 == num_lanes();
   }
+  [[nodiscard]] bool scheme_returns() const { return returns_; }
   /// Whether this band must wait for a message of another rank in this step.
   [[nodiscard]] bool awaits(Side side) const { return awaited_[static_cast<std::size_t>(side)]; }
   [[nodiscard]] bool poll(Side side) { return exchange_->poll(side); }
