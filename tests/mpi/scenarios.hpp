@@ -1,0 +1,361 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <barchan/core/model.hpp>
+#include <barchan/tasks/simulation.hpp>
+
+// Small models that are hard on the engine: what crosses cuts, breaks there, or leaves strips
+// empty.
+
+namespace barchan::test {
+
+struct Scenario {
+  std::string name;
+  Model model;
+  ParticleSet set;
+  std::int64_t num_steps = 300;
+  std::function<Vec3(const OwnedParticle&)> force;  ///< set once in a while, if any
+  bool must_migrate = true;                         ///< particles cross cuts on several ranks
+};
+
+inline ContactConstants soft_contact(double kn, double mu) {
+  ContactConstants c;
+  c.kn = kn;
+  c.kt = 0.4 * kn;
+  c.mu = mu;
+  c.cn.constant = 2.0;
+  c.ct.constant = 1.0;
+  return c;
+}
+
+/// One material, a box as deep as a metre, one stage. @param length  along x
+inline Model plain_model(int dimension, double length, double height) {
+  Model m;
+  m.dimension = dimension;
+  m.domain.hi = Vec3(length, dimension == 3 ? 1.0 : height, dimension == 3 ? height : 0.0);
+  m.time.step = 2e-4;
+  m.materials = {{"grain", 100.0}};
+  m.contacts.num_materials = 1;
+  m.contacts.constants = {soft_contact(1e5, 0.5)};
+  m.stages = {Stage{}};
+  return m;
+}
+
+inline void add_wall(Model& m, const Vec3& point, const Vec3& normal) {
+  WallSpec w;
+  w.name = "wall " + std::to_string(m.walls.size());
+  w.point = point;
+  w.normal = normal;
+  m.walls.push_back(w);
+}
+
+inline void add_box_walls(Model& m) {
+  for (int a = 0; a < m.dimension; ++a) {
+    if (m.domain.periodic[static_cast<std::size_t>(a)]) continue;
+    Vec3 n = Vec3::Zero();
+    n[a] = 1.0;
+    add_wall(m, m.domain.lo, n);
+    add_wall(m, m.domain.hi, -n);
+  }
+}
+
+struct Cloud {
+  Vec3 lo, hi;
+  double spacing;      ///< of a lattice, each point shaken a little
+  double radius;       ///< the largest; the others down to 0.7 of it
+  double speed = 0.0;  ///< of every particle, in a random direction
+  unsigned seed = 1;
+};
+
+inline void add_cloud(ParticleSet& set, int dimension, const Cloud& c) {
+  std::mt19937_64 random(c.seed);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  const auto count = [&](int a) {
+    return a < dimension ? std::max(1, static_cast<int>((c.hi[a] - c.lo[a]) / c.spacing)) : 1;
+  };
+  for (int i = 0; i < count(0); ++i) {
+    for (int j = 0; j < count(1); ++j) {
+      for (int k = 0; k < count(2); ++k) {
+        ParticleData p;
+        p.id = static_cast<std::int64_t>(set.particles.size()) + 1;
+        p.radius = c.radius * (0.85 + 0.15 * any(random));
+        p.density = dimension == 2 ? 100.0 : 1000.0;
+        const Vec3 at(i + 0.5, j + 0.5, k + 0.5);
+        for (int a = 0; a < dimension; ++a) {
+          p.position[a] = c.lo[a] + c.spacing * (at[a] + 0.04 * any(random));
+          p.velocity[a] = any(random);
+        }
+        p.velocity *= c.speed / (1e-9 + p.velocity.norm());
+        if (dimension == 3)
+          p.omega = Vec3(any(random), any(random), any(random));
+        else
+          p.omega[2] = 5.0 * any(random);
+        set.particles.push_back(p);
+      }
+    }
+  }
+}
+
+/// Ids no longer follow positions, so that an order by id alone would show.
+inline void shuffle_ids(ParticleSet& set, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::vector<std::int64_t> ids;
+  for (const auto& p : set.particles) ids.push_back(p.id);
+  for (std::size_t i = ids.size(); i > 1; --i) std::swap(ids[i - 1], ids[random() % i]);
+  for (BondData& b : set.bonds) {
+    b.id_a = ids[static_cast<std::size_t>(b.id_a - 1)];
+    b.id_b = ids[static_cast<std::size_t>(b.id_b - 1)];
+    if (b.id_a > b.id_b) std::swap(b.id_a, b.id_b);
+  }
+  for (std::size_t i = 0; i < ids.size(); ++i) set.particles[i].id = ids[i];
+}
+
+/// Bonds all neighbours closer than `reach` times the sum of radii among particles [begin, end).
+inline void bond_near(ParticleSet& set, std::size_t begin, std::size_t end, double reach) {
+  for (std::size_t p = begin; p < end; ++p) {
+    for (std::size_t q = p + 1; q < end; ++q) {
+      const auto &a = set.particles[p], &b = set.particles[q];
+      if ((a.position - b.position).norm() < reach * (a.radius + b.radius)) {
+        set.bonds.push_back({a.id, b.id, 0});
+      }
+    }
+  }
+}
+
+inline BondLaw weak_bond(double strength) {
+  BondLaw law;
+  law.name = "cement";
+  law.young_modulus = 2e4;
+  law.damping_ratio = 0.1;
+  law.tensile_strength = strength;
+  law.shear_strength = strength;
+  return law;
+}
+
+inline Scenario soil_with_ring_and_plate() {
+  Scenario s{
+      "soil with a bonded ring under a loaded plate", plain_model(2, 4.0, 2.0), {}, 600, {}, false};
+  Model& m = s.model;
+  m.gravity = Vec3(0.0, -9.81, 0.0);
+  const Vec3 middle(2.0, 0.5, 0.0);
+  constexpr int kRing = 16;
+  for (int q = 0; q < kRing; ++q) {
+    const double angle = 2.0 * 3.14159265358979 * q / kRing;
+    ParticleData p;
+    p.id = q + 1;
+    p.type = 1;
+    p.radius = 0.058;
+    p.density = 150.0;
+    p.position = middle + 0.3 * Vec3(std::cos(angle), std::sin(angle), 0.0);
+    s.set.particles.push_back(p);
+  }
+  bond_near(s.set, 0, kRing, 1.2);
+  ParticleSet soil;
+  add_cloud(soil, 2, {{0.0, 0.0, 0.0}, {4.0, 1.2, 0.0}, 0.095, 0.053, 0.1, 3});
+  for (ParticleData p : soil.particles) {
+    if ((p.position - middle).norm() < 0.45) continue;
+    p.id = static_cast<std::int64_t>(s.set.particles.size()) + 1;
+    s.set.particles.push_back(p);
+  }
+  m.materials.push_back({"pipe", 150.0});
+  m.contacts = {2,
+                {soft_contact(2e4, 0.5), soft_contact(1e4, 0.1), soft_contact(1e4, 0.1),
+                 soft_contact(3e4, 0.9)},
+                true};
+  m.bond_laws = {weak_bond(std::numeric_limits<double>::infinity())};
+  add_box_walls(m);
+  WallSpec plate;
+  plate.name = "plate";
+  plate.kind = WallKind::Plate;
+  plate.point = Vec3(2.0, 1.25, 0.0);
+  plate.normal = Vec3(0.0, -1.0, 0.0);
+  plate.width = 1.0;
+  plate.is_loaded = true;
+  plate.load = 50.0;
+  plate.mass = 5.0;
+  plate.damping = 50.0;
+  plate.from_stage = 1;
+  m.walls.push_back(plate);
+  m.stages = {Stage{"settle", 0.3, 0.02, 0.0}, Stage{"load", 0.1}};
+  shuffle_ids(s.set, 1);
+  return s;
+}
+
+inline Scenario column_collapse() {
+  Scenario s{"3D column collapse with restitution", plain_model(3, 3.0, 1.5), {}, 250, {}, false};
+  s.model.gravity = Vec3(1.0, 0.0, -9.81);
+  ContactConstants& c = s.model.contacts.constants[0];
+  c.cn = {0.0, 0.0, 0.4 * std::sqrt(c.kn)};
+  c.ct = {0.0, 10.0, 0.0};
+  add_box_walls(s.model);
+  add_cloud(s.set, 3, {{0.6, 0.2, 0.0}, {2.4, 0.8, 0.7}, 0.105, 0.057, 1.5, 5});
+  shuffle_ids(s.set, 2);
+  return s;
+}
+
+/// @param speed  [m/s]; a particle crosses several slabs of 0.13 m in the run
+inline Scenario gas(int dimension, std::array<bool, 3> periodic, double speed,
+                    const std::string& name) {
+  Scenario s{name, plain_model(dimension, 4.0, 1.0), {}, 400, {}, true};
+  s.model.domain.periodic = periodic;
+  s.model.contacts.constants[0].cn.constant = 0.05;
+  add_box_walls(s.model);
+  const double spacing = dimension == 2 ? 0.14 : 0.2;
+  add_cloud(
+      s.set, dimension,
+      {s.model.domain.lo, s.model.domain.hi, spacing, dimension == 2 ? 0.055 : 0.06, speed, 9});
+  shuffle_ids(s.set, 3);
+  return s;
+}
+
+inline Scenario shear_flow() {
+  Scenario s = gas(2, {true, false, false}, 0.5, "dense shear, periodic along the strips");
+  s.set = {};
+  add_cloud(s.set, 2, {s.model.domain.lo, s.model.domain.hi, 0.1, 0.053, 0.2, 11});
+  for (ParticleData& p : s.set.particles) p.velocity[0] += 8.0 * (p.position[1] - 0.5);
+  s.model.contacts.constants[0].mu = 1.5;
+  shuffle_ids(s.set, 4);
+  return s;
+}
+
+inline Scenario expansion() {
+  Scenario s{"a cloud expands into empty strips", plain_model(2, 6.0, 1.0), {}, 700, {}, true};
+  add_box_walls(s.model);
+  add_cloud(s.set, 2, {{0.0, 0.0, 0.0}, {1.2, 1.0, 0.0}, 0.1, 0.05, 3.0, 13});
+  for (ParticleData& p : s.set.particles) p.velocity[0] += 12.0 * p.position[0];
+  shuffle_ids(s.set, 5);
+  return s;
+}
+
+inline Scenario one_slab() {
+  Scenario s{"all particles in one slab", plain_model(2, 4.0, 1.0), {}, 300, {}, false};
+  add_box_walls(s.model);
+  s.model.gravity = Vec3(0.0, -9.81, 0.0);
+  add_cloud(s.set, 2, {{3.0, 0.0, 0.0}, {3.11, 1.0, 0.0}, 0.1, 0.05, 0.2, 15});
+  return s;
+}
+
+inline Scenario two_particles(bool periodic) {
+  Scenario s{"fewer particles than ranks", plain_model(2, 4.0, 1.0), {}, 500, {}, false};
+  s.model.domain.periodic[0] = periodic;
+  s.model.search.skin = 0.03;
+  ParticleData p;
+  p.id = 7;
+  p.radius = 0.06;
+  p.density = 1000.0;
+  p.position = Vec3(periodic ? 0.2 : 1.9, 0.5, 0.0);
+  p.velocity = Vec3(periodic ? -4.0 : 4.0, 0.3, 0.0);
+  s.set.particles.push_back(p);
+  p.id = 3;
+  p.position = Vec3(periodic ? 3.85 : 2.1, 0.53, 0.0);
+  p.velocity = Vec3(periodic ? 3.0 : -3.0, 0.0, 0.0);
+  s.set.particles.push_back(p);
+  return s;
+}
+
+inline Scenario moving_walls() {
+  Scenario s{"walls that move", plain_model(2, 4.0, 1.0), {}, 400, {}, false};
+  add_wall(s.model, {0.05, 0.0, 0.0}, {1.0, 0.0, 0.0});
+  s.model.walls.back().velocity = Vec3(2.0, 0.0, 0.0);
+  add_wall(s.model, {4.0, 0.0, 0.0}, {-1.0, 0.0, 0.0});
+  add_wall(s.model, {0.0, 0.0, 0.0}, {0.0, 1.0, 0.0});
+  s.model.walls.back().velocity = Vec3(1.5, 0.0, 0.0);  // slides in its own plane
+  add_wall(s.model, {0.0, 1.0, 0.0}, {0.0, -1.0, 0.0});
+  s.model.gravity = Vec3(0.0, -9.81, 0.0);
+  add_cloud(s.set, 2, {{0.1, 0.0, 0.0}, {3.9, 0.6, 0.0}, 0.11, 0.05, 0.5, 17});
+  shuffle_ids(s.set, 6);
+  return s;
+}
+
+inline Scenario rough_bed() {
+  Scenario s{"free particles on fixed ones", plain_model(2, 4.0, 1.0), {}, 400, {}, true};
+  s.model.gravity = Vec3(6.0, -9.81, 0.0);
+  ContactConstants& c = s.model.contacts.constants[0];
+  c.cn = {0.0, 20.0, 0.1 * std::sqrt(c.kn)};
+  s.model.domain.periodic[0] = true;
+  add_cloud(s.set, 2, {{0.0, 0.05, 0.0}, {4.0, 0.15, 0.0}, 0.1, 0.05, 0.0, 19});
+  for (ParticleData& p : s.set.particles) {
+    p.fixed = true;
+    p.omega = Vec3::Zero();
+  }
+  add_cloud(s.set, 2, {{0.0, 0.18, 0.0}, {4.0, 0.7, 0.0}, 0.11, 0.05, 0.3, 21});
+  for (ParticleData& p : s.set.particles) {
+    if (!p.fixed) p.velocity[0] += 3.0;
+  }
+  shuffle_ids(s.set, 7);
+  return s;
+}
+
+inline Scenario pushed_by_caller() {
+  Scenario s = gas(2, {false, true, false}, 3.0, "forces of the caller, with migration");
+  s.force = [](const OwnedParticle& p) -> Vec3 {
+    return Vec3(-2.0 * p.velocity[0] + 2.0 * std::sqrt(static_cast<double>(p.id)),
+                -0.5 * p.mass * p.position[1], 0.0);
+  };
+  return s;
+}
+
+inline Scenario breaking_plate(int dimension) {
+  Scenario s{"bonds break at cuts, " + std::to_string(dimension) + "D",
+             plain_model(dimension, 4.0, 1.5),
+             {},
+             400,
+             {},
+             true};
+  s.model.bond_laws = {weak_bond(dimension == 2 ? 700.0 : 500.0)};
+  s.model.domain.periodic[0] = dimension == 3;
+  add_box_walls(s.model);
+  add_cloud(s.set, dimension,
+            {{0.3, 0.2, 0.2}, {3.6, dimension == 2 ? 0.7 : 0.5, 0.5}, 0.11, 0.055, 1.0, 23});
+  bond_near(s.set, 0, s.set.particles.size(), 1.3);
+  const int up = dimension - 1;
+  for (ParticleData& p : s.set.particles) {
+    p.velocity[up] -= 2.0 * std::sin(4.0 * p.position[0]);
+    p.velocity[0] += 4.0;
+  }
+  shuffle_ids(s.set, 8);
+  return s;
+}
+
+/// @param num_materials  5 materials make 15 laws and the null law, more than a vector register
+/// holds
+inline Scenario many_laws(int num_materials, bool no_tension) {
+  Scenario s =
+      gas(2, {true, true, false}, 2.0,
+          std::to_string(num_materials) + " materials" + (no_tension ? "" : ", with tension"));
+  s.set = {};
+  add_cloud(s.set, 2, {s.model.domain.lo, s.model.domain.hi, 0.105, 0.055, 2.0, 25});
+  s.model.materials.assign(static_cast<std::size_t>(num_materials), {"grain", 1000.0});
+  s.model.contacts = {
+      num_materials,
+      std::vector<ContactConstants>(static_cast<std::size_t>(num_materials * num_materials)),
+      no_tension};
+  for (int a = 0; a < num_materials; ++a) {
+    for (int b = 0; b < num_materials; ++b) {
+      ContactConstants c = soft_contact(1e4 + 3e3 * (a + b), 0.2 * (a + b));
+      c.cn.constant = 3.0 + a + b;
+      s.model.contacts.constants[static_cast<std::size_t>(a * num_materials + b)] = c;
+    }
+  }
+  for (ParticleData& p : s.set.particles) p.type = static_cast<std::int32_t>(p.id % num_materials);
+  shuffle_ids(s.set, 9);
+  return s;
+}
+
+inline Scenario strips_along_y() {
+  Scenario s = gas(2, {true, true, false}, 4.0, "strips along y, both axes periodic");
+  std::swap(s.model.domain.hi[0], s.model.domain.hi[1]);
+  s.model.domain.strip_axis = 1;
+  for (ParticleData& p : s.set.particles) std::swap(p.position[0], p.position[1]);
+  return s;
+}
+
+}  // namespace barchan::test

@@ -1,0 +1,213 @@
+// The same bits for any number of ranks and threads, any exchange, schedule, contact search and
+// vector width: every variant is compared with one rank and one thread, computed by rank 0 on a
+// communicator of its own.
+#include <gtest/gtest.h>
+#include <mpi.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <barchan/core/kernels/kernel_set.hpp>
+
+#include "scenarios.hpp"
+
+namespace barchan::test {
+namespace {
+
+/// What a run leaves behind: words that must all be equal.
+struct Outcome {
+  std::vector<std::uint64_t> words;
+  std::int64_t migrations = 0, contacts = 0, broken = 0;
+
+  void add(double value) { words.push_back(std::bit_cast<std::uint64_t>(value)); }
+};
+
+int num_ranks() {
+  int size = 1;
+  MPI_Comm_size(MPI_COMM_WORLD, &size);
+  return size;
+}
+
+bool is_root() {
+  int rank = 0;
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  return rank == 0;
+}
+
+/// Runs in `pieces`, measuring between them, which must not change a bit.
+Outcome outcome_of(const Scenario& s, MPI_Comm comm, const RunOptions& options, int pieces) {
+  constexpr std::int64_t kForceEvery = 50;
+  Simulation sim(s.model, s.set, comm, options);
+  std::int64_t done = 0;
+  for (int piece = 1; piece <= pieces; ++piece) {
+    const std::int64_t until = s.num_steps * piece / pieces / kForceEvery * kForceEvery;
+    while (done < until) {
+      if (s.force) sim.apply_forces(s.force);
+      done += sim.run(std::min(s.force ? kForceEvery : until, until - done));
+    }
+    if (piece < pieces) (void)sim.measure();
+  }
+  const Measures m = sim.measure();
+  Outcome out;
+  out.words = {sim.digest(), static_cast<std::uint64_t>(m.contacts),
+               static_cast<std::uint64_t>(m.bonds), static_cast<std::uint64_t>(m.broken_bonds),
+               static_cast<std::uint64_t>(sim.timings().rebuilds)};
+  for (const double value :
+       {m.kinetic.value(), m.elastic.value(), m.gravitational.value(), m.max_overlap, m.max_speed,
+        m.momentum[0].value(), m.momentum[1].value(), m.momentum[2].value()}) {
+    out.add(value);
+  }
+  for (const WallState& w : sim.walls()) {
+    for (int c = 0; c < 3; ++c) {
+      out.add(w.force[c]);
+      out.add(w.torque[c]);
+      out.add(w.point[c]);
+    }
+    out.add(w.work);
+  }
+  std::int64_t migrations = sim.timings().migrations;
+  MPI_Allreduce(&migrations, &out.migrations, 1, MPI_INT64_T, MPI_SUM, comm);
+  out.contacts = m.contacts;
+  out.broken = m.broken_bonds;
+  return out;
+}
+
+/// The reference, on every rank.
+Outcome reference_of(const Scenario& s) {
+  Outcome out;
+  if (is_root()) {
+    RunOptions options;
+    options.threads = 1;
+    options.vector = "scalar";
+    out = outcome_of(s, MPI_COMM_SELF, options, 1);
+  }
+  std::array<std::int64_t, 3> head{static_cast<std::int64_t>(out.words.size()), out.contacts,
+                                   out.broken};
+  MPI_Bcast(head.data(), 3, MPI_INT64_T, 0, MPI_COMM_WORLD);
+  out.words.resize(static_cast<std::size_t>(head[0]));
+  out.contacts = head[1];
+  out.broken = head[2];
+  MPI_Bcast(out.words.data(), static_cast<int>(head[0]), MPI_UINT64_T, 0, MPI_COMM_WORLD);
+  return out;
+}
+
+/// One run for each exchange; everything else takes turns, so that all pairs of choices meet over
+/// the scenarios.
+std::vector<RunOptions> variants(unsigned turn) {
+  const auto exchanges = exchange_choices();
+  const auto widths = vector_widths();
+  std::vector<RunOptions> all;
+  for (std::size_t e = 0; e < exchanges.size(); ++e) {
+    const auto q = static_cast<unsigned>(e) + turn;
+    RunOptions o;
+    o.exchange = exchanges[e];
+    o.threads = 1 + static_cast<int>((q + turn / 3) % 3);
+    o.schedule = q % 2 == 0 ? Schedule::Overlap : Schedule::Sequential;
+    o.search = (q / 2) % 2 == 0 ? ContactSearchKind::Cells : ContactSearchKind::AllPairs;
+    o.vector = name_of(widths[(q + turn / 2) % widths.size()]);
+    o.max_delay_seconds = (q / 3) % 2 == 0 ? 1e-4 : 0.0;
+    o.delay_seed = 17 * q + 1;
+    all.push_back(o);
+  }
+  return all;
+}
+
+std::string describe(const RunOptions& o) {
+  return fmt::format(
+      "{} ranks, exchange {}, {} threads, {}, {}, {}, delays up to {} s", num_ranks(), o.exchange,
+      o.threads, o.schedule == Schedule::Overlap ? "overlap" : "sequential",
+      o.search == ContactSearchKind::Cells ? "cells" : "all-pairs", o.vector, o.max_delay_seconds);
+}
+
+Outcome expect_same_bits(const Scenario& s, unsigned turn) {
+  const Outcome reference = reference_of(s);
+  for (const RunOptions& o : variants(turn)) {
+    const Outcome got = outcome_of(s, MPI_COMM_WORLD, o, 2);
+    EXPECT_EQ(got.words, reference.words) << s.name << ": " << describe(o);
+    if (s.must_migrate && num_ranks() > 1) {
+      EXPECT_GT(got.migrations, 0) << s.name;
+    }
+  }
+  return reference;
+}
+
+TEST(SameBits, SoilWithBondedRingUnderLoadedPlate) {
+  EXPECT_GT(expect_same_bits(soil_with_ring_and_plate(), 0).contacts, 150);
+}
+
+TEST(SameBits, ColumnCollapseIn3D) {
+  EXPECT_GT(expect_same_bits(column_collapse(), 1).contacts, 30);
+}
+
+TEST(SameBits, ShearFlowAroundThePeriodicEnd) {
+  EXPECT_GT(expect_same_bits(shear_flow(), 2).contacts, 50);
+}
+
+TEST(SameBits, GasPeriodicAlongTheStrips) {
+  (void)expect_same_bits(gas(2, {true, false, false}, 6.0, "gas, periodic x"), 3);
+}
+
+TEST(SameBits, GasPeriodicAcrossTheStrips) {
+  (void)expect_same_bits(gas(2, {false, true, false}, 6.0, "gas, periodic y"), 4);
+}
+
+TEST(SameBits, GasPeriodicBothWaysWithStripsAlongY) {
+  (void)expect_same_bits(strips_along_y(), 5);
+}
+
+TEST(SameBits, GasIn3DPeriodicAllAround) {
+  (void)expect_same_bits(gas(3, {true, true, true}, 6.0, "3D gas, periodic"), 6);
+}
+
+TEST(SameBits, GasIn3DPeriodicAcrossTheStrips) {
+  (void)expect_same_bits(gas(3, {false, true, false}, 6.0, "3D gas, periodic y"), 7);
+}
+
+TEST(SameBits, CloudExpandingIntoEmptyStripsWhileCutsMove) {
+  (void)expect_same_bits(expansion(), 8);
+}
+
+TEST(SameBits, AllParticlesInOneSlab) {
+  (void)expect_same_bits(one_slab(), 9);
+}
+
+TEST(SameBits, FewerParticlesThanRanks) {
+  (void)expect_same_bits(two_particles(false), 10);
+  (void)expect_same_bits(two_particles(true), 11);
+}
+
+TEST(SameBits, MovingWalls) {
+  (void)expect_same_bits(moving_walls(), 12);
+}
+
+TEST(SameBits, FreeParticlesOnFixedOnesWithMassDependentDamping) {
+  (void)expect_same_bits(rough_bed(), 13);
+}
+
+TEST(SameBits, ForcesOfTheCallerMoveWithTheirParticles) {
+  (void)expect_same_bits(pushed_by_caller(), 14);
+}
+
+TEST(SameBits, BondsBreakingAtCuts) {
+  EXPECT_GT(expect_same_bits(breaking_plate(2), 15).broken, 10);
+}
+
+TEST(SameBits, BondsBreakingAtCutsIn3DAroundThePeriodicEnd) {
+  EXPECT_GT(expect_same_bits(breaking_plate(3), 16).broken, 10);
+}
+
+TEST(SameBits, MoreLawsThanAVectorHolds) {
+  (void)expect_same_bits(many_laws(5, true), 17);
+}
+
+TEST(SameBits, TensionAllowedWithFewLaws) {
+  (void)expect_same_bits(many_laws(2, false), 18);
+}
+
+}  // namespace
+}  // namespace barchan::test
