@@ -71,7 +71,7 @@ constexpr KeySpec kPhysicsKeys[] = {
     {"[[wall]]", "depth", T::PositiveNumber, "m", "none",
      "plate in 3D only, required: across normal and width"},
     {"[[wall]]", "load", T::NonNegativeNumber, "N/m²", "none",
-     "plate only: it moves along its normal, pushed against it by this load per face"},
+     "plate only: it moves along its normal, pressed along it by this load per face"},
     {"[[wall]]", "mass", T::PositiveNumber, "kg", "none", "of a loaded plate, required there"},
     {"[[wall]]", "damping", T::NonNegativeNumber, "N·s/m", "0", "viscous, on a loaded plate"},
     {"[[wall]]", "from_stage", T::String, "", "the first stage",

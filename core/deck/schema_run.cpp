@@ -44,8 +44,7 @@ constexpr KeySpec kRunKeys[] = {
     {"[[stage]]", "max_time", T::PositiveNumber, "s", "none",
      "the stage ends after this time at the latest"},
     {"[[stage]]", "kinetic_ratio", T::NonNegativeNumber, "", "0",
-     "the stage ends when kinetic energy over the sum of force times radius falls below; 0 = "
-     "never"},
+     "the stage ends when kinetic over elastic energy falls below; 0 = never"},
 
     {"[search]", "kind", T::Choice, "", "cells",
      "`cells` with lists of candidates, or every pair with every other, as a reference",
