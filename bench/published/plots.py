@@ -49,7 +49,9 @@ def times_and_speed_up(pyplot, runs, path):
         left.legend(fontsize=8)
         right.legend(fontsize=8)
         for axis in (left, right):
-            axis.grid(True, which="both", alpha=0.3)
+            axis.set_xticks([1, 2, 5, 10, 20, 35], ["1", "2", "5", "10", "20", "35"])
+            axis.minorticks_off()
+            axis.grid(True, alpha=0.3)
     figure.tight_layout()
     figure.savefig(path, metadata={"Date": None} if path.endswith(".svg") else None)
     pyplot.close(figure)
@@ -57,7 +59,7 @@ def times_and_speed_up(pyplot, runs, path):
 
 def profiles(pyplot, shares, path):
     """Stacked bars: where the serial time goes, published and here. @param shares  {label: [(phase, share), …]}"""
-    figure, axis = pyplot.subplots(figsize=(9, 1.2 + 0.7 * len(shares)))
+    figure, axis = pyplot.subplots(figsize=(9, 1.7 + 0.6 * len(shares)))
     palette = pyplot.get_cmap("tab20").colors
     names = []
     for row, (label, parts) in enumerate(shares.items()):
@@ -71,7 +73,7 @@ def profiles(pyplot, shares, path):
     axis.set_yticks(range(len(shares)), list(shares))
     axis.invert_yaxis()
     axis.set(xlim=(0, 1), xlabel="share of the serial loop")
-    axis.legend(fontsize=8, ncol=5, loc="upper center", bbox_to_anchor=(0.5, -0.25))
+    axis.legend(fontsize=8, ncol=5, loc="upper center", bbox_to_anchor=(0.5, -0.9 / len(shares) - 0.05))
     figure.tight_layout()
     figure.savefig(path, metadata={"Date": None} if path.endswith(".svg") else None)
     pyplot.close(figure)

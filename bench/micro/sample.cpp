@@ -1,0 +1,141 @@
+#include "sample.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <barchan/core/deck/deck.hpp>
+#include <barchan/core/generators/make_particles.hpp>
+#include <barchan/tasks/stability.hpp>
+#include <barchan/tasks/strip_plan.hpp>
+
+namespace barchan::micro {
+namespace {
+
+constexpr const char* kDeck2 = R"(
+dimension = 2
+gravity = [0.0, -9.81]
+domain = {{ lo = [-0.1, -0.1], hi = [{0}, {1}] }}
+time = {{ step = 1e-6, steps = 1 }}
+contact = {{ no_tension = false }}
+[[material]]
+name = "soil"
+density = 126.0
+normal_stiffness = 55000.0
+tangential_stiffness = 70.0
+normal_damping_rate = 1300.0
+tangential_damping_rate = 180.0
+friction = 0.5
+[[particles]]
+kind = "packing"
+region = {{ lo = [0.0, 0.0], hi = [{0}, {1}] }}
+radius = [0.045, 0.055]
+count = {2}
+material = "soil"
+)";
+constexpr const char* kDeck3 = R"(
+dimension = 3
+gravity = [0.0, 0.0, -1.0]
+domain = {{ lo = [-0.1, -0.1, -0.1], hi = [{0}, {1}, {1}] }}
+time = {{ step = 1e-7, steps = 1 }}
+contact = {{ no_tension = false }}
+[[material]]
+name = "sphere"
+density = 1.89
+normal_stiffness = 2e5
+tangential_stiffness = 57142.0
+normal_damping_rate = 50.0
+friction = 0.5
+[[particles]]
+kind = "packing"
+region = {{ lo = [0.0, 0.0, 0.0], hi = [{0}, {1}, {1}] }}
+radius = [0.45, 0.55]
+count = {2}
+material = "sphere"
+)";
+
+/// Sides of a box for so many particles, 2:1 in 2D; solid fractions 0.82 and 0.60.
+template <int Dim>
+Deck make_deck(std::int64_t count) {
+  const double n = static_cast<double>(count);
+  const double volume = Dim == 2 ? n * 3.1416 * 0.00251 / 0.82 : n * 0.5236 * 1.01 / 0.60;
+  const double high = Dim == 2 ? std::sqrt(volume / 2.0) : std::cbrt(volume);
+  const double wide = volume / (Dim == 2 ? high : high * high);
+  return parse_deck(fmt::format(fmt::runtime(Dim == 2 ? kDeck2 : kDeck3), wide, high, count),
+                    "sample");
+}
+
+template <int Dim>
+void settle(Sample<Dim>& sample) {
+  Lane<Dim>&left = *sample.lane, *right = sample.right.get();
+  std::vector<std::byte> to_right, to_left;
+  left.order();
+  if (right != nullptr) {
+    right->order();
+    left.pack_ghosts(Lane<Dim>::Right, to_right);
+    right->pack_ghosts(Lane<Dim>::Left, to_left);
+    right->list_owned();
+    right->take_ghosts(to_right, {});
+    right->restore_history();
+    right->cut_chunks(1 << 14);
+  }
+  left.list_owned();
+  left.take_ghosts({}, to_left);
+  left.restore_history();
+  left.cut_chunks(std::int64_t{1} << 60);
+}
+
+}  // namespace
+
+template <int Dim>
+std::unique_ptr<Sample<Dim>> make_sample(std::int64_t count, VectorWidth width, bool has_cut) {
+  const Deck deck = make_deck<Dim>(count);
+  ParticleSet set = make_particles(deck.model, deck.sources);
+  for (ParticleData& p : set.particles) p.radius *= 1.005;
+  auto sample = std::make_unique<Sample<Dim>>();
+  World<Dim>& world = sample->world;
+  world.skin = default_skin(set);
+  world.dt = deck.model.time.step;
+  world.num_particles = count;
+  world.grid = Grid<Dim>(deck.model.domain, search_reach(set, world.skin), count);
+  world.laws = LawTable(deck.model.contacts);
+  world.kernels = make_kernels(Dim, width, world.laws, false, world.grid.box());
+
+  const int slabs = world.grid.num_slabs(), cut = has_cut ? slabs / 2 : slabs;
+  std::vector<ParticleData> parts[2];
+  for (const ParticleData& p : set.particles)
+    parts[world.grid.coordinate(p.position.data(), 0) < cut ? 0 : 1].push_back(p);
+  const auto seed = [&](int side, int begin, int end) {
+    auto lane = std::make_unique<Lane<Dim>>(world);
+    if (has_cut) {
+      Band& band = lane->band(side == 0 ? Lane<Dim>::Right : Lane<Dim>::Left);
+      band.exists = true;
+      band.ghosts_first = side == 1;
+    }
+    const std::vector<char> bonded(parts[side].size(), 0);
+    lane->seed(begin, end, parts[side], {}, {}, bonded);
+    return lane;
+  };
+  sample->lane = seed(0, 0, cut);
+  if (has_cut) sample->right = seed(1, cut, slabs);
+  settle(*sample);
+  sample->touching = sample->lane->measure(deck.model.gravity).contacts;
+  return sample;
+}
+
+template <int Dim>
+void step(Lane<Dim>& lane, double dt) {
+  StepFrame frame;
+  frame.kick = dt;
+  lane.begin_step(frame);
+  for (int c = 0; c < lane.num_chunks(); ++c) lane.run_chunk(c);
+}
+
+template std::unique_ptr<Sample<2>> make_sample<2>(std::int64_t, VectorWidth, bool);
+template std::unique_ptr<Sample<3>> make_sample<3>(std::int64_t, VectorWidth, bool);
+template void step<2>(Lane<2>&, double);
+template void step<3>(Lane<3>&, double);
+
+}  // namespace barchan::micro
