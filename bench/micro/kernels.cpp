@@ -17,7 +17,7 @@ struct Pairs {
   AlignedVector<std::uint8_t> code, masks;
   AlignedVector<double> spring;
 
-  Pairs(const Lane<Dim>& lane, bool only_touching) {
+  Pairs(Lane<Dim>& lane, bool only_touching) {
     const PairList& list = lane.list(Lane<Dim>::Owned);
     for (std::size_t k = 0; k < list.i.size(); ++k) {
       if (only_touching && !touches(lane.store(), list.i[k], list.j[k])) continue;
