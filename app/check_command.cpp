@@ -140,7 +140,9 @@ void print_strips(const LoadedDeck& loaded, int wanted) {
   std::printf("Strips: cut along %c in cells of %.3g m; at most %d ranks fit\n%s", "xyz"[plan.axis],
               plan.slab_width, plan.most_ranks(), table(rows).c_str());
   std::printf(
-      "  Memory: %.0f bytes a particle in the time loop, and %s on every rank for the start.\n",
+      "  Memory: %.0f bytes a particle at the start, up to twice that when packed, and %s a rank "
+      "for "
+      "set-up.\n",
       bytes, readable_bytes(all).c_str());
   std::printf("  Contact search: %s, skin %.3g m\n",
               loaded.deck.model.search.kind == ContactSearchKind::Cells ? "cells" : "all-pairs",
@@ -179,10 +181,9 @@ void print_step(const Model& model, const std::vector<StepLimit>& limits) {
   if (share > 1.0 && model.time.allow_unstable) {
     std::printf("  Warning: beyond the limit, which the deck allows (allow_unstable).\n");
   } else if (share > kAdvisedShare && share <= 1.0) {
-    std::printf(
-        "  Warning: the step is %s of the limit of a pair; in a packing, keep to a fifth: %.2g "
-        "s.\n",
-        percent(share).c_str(), kAdvisedShare * limits.front().step);
+    std::printf("  Warning: the step is %s of its limit (%s); keep to a fifth: %.2g s.\n",
+                percent(share).c_str(), limits.front().what.c_str(),
+                kAdvisedShare * limits.front().step);
   } else if (share <= kAdvisedShare) {
     std::printf("  The step is within a fifth of every limit.\n");
   }

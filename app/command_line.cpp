@@ -131,8 +131,7 @@ std::string meant(const CLI::App& root, const std::string& word) {
   return std::string(deck::nearest(word.substr(0, word.find('=')), views));
 }
 
-std::string explain(const CLI::App& root, const CLI::ParseError& error, int argc,
-                    const char* const* argv) {
+std::string explain(const CLI::App& root, const CLI::ParseError& error, int argc) {
   std::string text = error.what();
   const auto end = text.find_last_not_of("\n ");
   text.resize(end == std::string::npos ? 0 : end + 1);
@@ -146,7 +145,6 @@ std::string explain(const CLI::App& root, const CLI::ParseError& error, int argc
     const std::string name = meant(root, rest.front());
     if (!name.empty()) remedy = "did you mean '" + name + "'?";
   }
-  (void)argv;
   return fmt::format("barchan: {} ({})\n", text, remedy);
 }
 
@@ -180,7 +178,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     return line;
   } catch (const CLI::ParseError& error) {
     line.status = kWrongInput;
-    line.text = explain(root, error, argc, argv);
+    line.text = explain(root, error, argc);
     return line;
   }
   line.kind = kind_of(root);

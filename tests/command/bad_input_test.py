@@ -37,7 +37,7 @@ CASES = [
     ("negative radius", edited(("radius = 0.04", "radius = -0.04")), ["radius"], []),
     ("missing pair", edited(("[[particles]]", SECOND_MATERIAL), ('material = "sand"\n\n[[wall]]',
                                                                  'material = "clay"\n\n[[wall]]')),
-     ["clay", "normal_stiffness"], []),
+     ["missing material pair", "clay", "[[pair]]"], []),
     ("overlapping regions", edited(("[[wall]]", SECOND_LATTICE + "[[wall]]")), ["overlap"], []),
     ("missing particle file", from_file("nowhere.csv"), ["nowhere.csv"], []),
     ("malformed particle file", from_file("malformed.csv"), ["malformed.csv:3:", "wide"], []),
@@ -128,10 +128,24 @@ def check_unstable():
     expect(done.returncode != 2, f"allow_unstable did not allow: {done.stderr}")
 
 
+def check_failure(ranks):
+    """A run that goes wrong ends with status 1, everywhere and with one message."""
+    write("open.toml", edited(("[[wall]]", LATTICE.replace('material = "sand"', 'material = "sand"\nvelocity = [0.0, 9.0]')
+                               .replace(SAND_REGION, "region = { lo = [3.0, 0.85], hi = [3.2, 1.0] }") + "[[wall]]"),
+                              ("steps = 200", "steps = 20000")))
+    fresh("open.out")
+    done = run("run", "open.toml", "--quiet", ranks=ranks)
+    said = messages(done)
+    expect(done.returncode == 1 and len(said) == 1, f"a particle that leaves, {ranks} ranks: {done}")
+    expect("domain" in "".join(said), f"a particle that leaves, {ranks} ranks: {said}")
+    expect(not os.path.exists("open.out/run.json"), "a failed run left a run.json")
+
+
 write_files()
 for num_ranks in (1, 2):
     check_decks(num_ranks)
     check_folders(num_ranks)
+    check_failure(num_ranks)
 check_ranks()
 check_unstable()
 finish()

@@ -23,7 +23,7 @@ def check_check():
         for word in ("350 disks", "sand–sand", "Stable step", "at most", "Memory", "floor"):
             expect(done.stdout.count(word) >= 1, f"check: no '{word}' in {done.stdout}")
         expect(done.stdout.count("Stable step") == 1, "check printed more than once")
-    done = run("check", "case.toml", "--set", "time.step=1e-3")
+    done = run("check", "case.toml", "--set", "time.step=3e-3")
     expect("Warning" in done.stdout, f"check: no warning above a fifth: {done.stdout}")
 
 
