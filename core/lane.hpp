@@ -60,7 +60,8 @@ struct Measures {
   void add(const Measures& other);
 };
 
-/// How far particles have come since the last rebuild, and how fast they are.
+/// How far particles have come since the last rebuild, and how fast they are. A distance beyond half the skin that was
+/// reached between a check and the rebuild it led to is told by the next check.
 struct Travel {
   double distance2 = 0.0;  ///< largest squared displacement [m²]
   double speed2 = 0.0;     ///< largest squared speed [m²/s²]
@@ -234,6 +235,7 @@ class Lane {
   std::int32_t rows_done_ = 0;
   SearchSeconds search_seconds_;
   int slab_begin_ = 0, slab_end_ = 0;
+  double last_distance2_ = 0.0;  ///< largest squared displacement when the lists before these were given up
 
   // between begin_rebuild and restore_history
   std::vector<std::int32_t> new_row_;  ///< of every source row; -1: left

@@ -117,6 +117,7 @@ std::vector<WallSums> Lane<Dim>::measure_walls() const {
 template <int Dim>
 Travel Lane<Dim>::travel() const {
   Travel t;
+  if (std::sqrt(last_distance2_) > 0.5 * world_->skin) t.distance2 = last_distance2_;
   const PeriodicBox& box = world_->grid.box();
   for (std::int32_t i = 0; i < store_.num_owned; ++i) {
     const double *x = store_.x(i), *v = store_.v(i);
