@@ -1,0 +1,331 @@
+#include <barchan/core/kernels/kernel_set.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <barchan/core/pair_list.hpp>
+
+#include "lane_fixture.hpp"
+
+namespace barchan::test {
+namespace {
+
+/// Records of particles, the last two of them waste, and a list of pairs among them.
+template <int Dim>
+struct Sample {
+  using L = Layout<Dim>;
+  int num_rows;
+  AlignedVector<double> motion, spin, force;
+  PairList list;
+
+  Sample(int particles, int pairs, int num_laws, unsigned seed) : num_rows(particles + 2) {
+    std::mt19937_64 random(seed);
+    std::uniform_real_distribution<double> any(-1.0, 1.0);
+    const auto n = static_cast<std::size_t>(num_rows);
+    motion.resize(n * L::kMotion);
+    spin.assign(n * 4, 0.0);
+    force.assign(n * L::kForce, 0.0);
+    for (std::size_t i = 0; i < n; ++i) {
+      double* m = motion.data() + i * L::kMotion;
+      for (int c = 0; c < Dim; ++c) m[c] = any(random);
+      m[L::kRadius] = 0.2 + 0.2 * std::fabs(any(random));
+      for (int c = 4; c < 7; ++c) m[c] = 3.0 * any(random);
+      m[L::kInverseMass] = i % 9 == 0 ? 0.0 : 0.5 + std::fabs(any(random));
+      for (int c = 0; c < 3; ++c) spin[4 * i + static_cast<std::size_t>(c)] = 2.0 * any(random);
+    }
+    for (std::size_t w = n - 2; w < n; ++w) {
+      std::fill_n(motion.data() + w * L::kMotion, 8, 0.0);
+      motion[w * L::kMotion] = -1e9 * static_cast<double>(1 + w - (n - 2));
+      motion[w * L::kMotion + L::kInverseMass] = 1.0;
+    }
+    while (list.size() < pairs) {
+      const auto a = static_cast<std::int32_t>(random() % static_cast<unsigned>(particles));
+      const auto b = static_cast<std::int32_t>(random() % static_cast<unsigned>(particles));
+      if (a == b || (a % 9 == 0 && b % 9 == 0)) continue;  // two fixed particles are never listed
+      list.push(std::min(a, b), std::max(a, b),
+                static_cast<std::uint8_t>(random() % static_cast<unsigned>(num_laws)));
+    }
+    list.pad(particles);
+    list.template reset_springs<Dim>();
+    list.result.assign(list.i.size() * L::kForce, 7.0);
+  }
+
+  /// Pair k touches just so, or not by one unit in the last place.
+  void barely(std::int64_t k, bool touches) {
+    const auto i = static_cast<std::size_t>(list.i[static_cast<std::size_t>(k)]),
+               j = static_cast<std::size_t>(list.j[static_cast<std::size_t>(k)]);
+    double *a = motion.data() + i * L::kMotion, *b = motion.data() + j * L::kMotion;
+    std::fill_n(a, Dim, 0.0);
+    std::fill_n(b, Dim, 0.0);
+    a[L::kRadius] = b[L::kRadius] = 0.25;
+    b[Dim - 1] = touches ? std::nextafter(0.5, 0.0) : 0.5;
+  }
+
+  PairJob job(const LawTable& laws, const PeriodicBox& box) {
+    PairJob j;
+    j.motion = motion.data();
+    j.spin = spin.data();
+    j.force = force.data();
+    j.i = j.row_i = list.i.data();
+    j.j = j.row_j = list.j.data();
+    j.code = list.code.data();
+    j.spring = list.spring.data();
+    j.result = list.result.data();
+    j.end = list.size();
+    j.dt = 2e-2;
+    j.box = box;
+    j.laws = laws.view();
+    return j;
+  }
+};
+
+bool same_bits(const AlignedVector<double>& a, const AlignedVector<double>& b) {
+  return std::ranges::equal(a, b, [](double p, double q) {
+    return std::bit_cast<std::uint64_t>(p) == std::bit_cast<std::uint64_t>(q);
+  });
+}
+
+/// A zero of either sign is the same: sums that start from +0 never show it.
+bool same_values(const AlignedVector<double>& a, const AlignedVector<double>& b) {
+  return std::ranges::equal(a, b);
+}
+
+enum class Dashpots { Constant, Rate, Critical, Both };
+
+LawTable laws_of(int num_materials, Dashpots dashpots, bool no_tension) {
+  ContactTable table = table_of(num_materials, no_tension);
+  for (ContactConstants& c : table.constants) {
+    if (dashpots == Dashpots::Rate || dashpots == Dashpots::Both) c.cn.rate = 10.0, c.ct.rate = 3.0;
+    if (dashpots == Dashpots::Critical || dashpots == Dashpots::Both)
+      c.cn.critical = 0.3 * std::sqrt(c.kn), c.ct.critical = 2.0;
+  }
+  return LawTable(table);
+}
+
+struct Choice {
+  int num_materials;
+  Dashpots dashpots;
+  bool no_tension, has_bonds, periodic;
+};
+
+std::vector<Choice> choices() {
+  std::vector<Choice> all;
+  for (const int materials :
+       {1, 2, 3, 5}) {  // 2, 4, 7 and 16 laws: one, one register, one register, more than that
+    for (const Dashpots d :
+         {Dashpots::Constant, Dashpots::Rate, Dashpots::Critical, Dashpots::Both}) {
+      for (int bits = 0; bits < 8; ++bits)
+        all.push_back({materials, d, (bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0});
+    }
+  }
+  return all;
+}
+
+template <int Dim>
+PeriodicBox box_of(bool periodic) {
+  PeriodicBox box;
+  for (int a = 0; periodic && a < Dim; a += 2) box.length[a] = 1.6, box.inverse[a] = 1.0 / 1.6;
+  return box;
+}
+
+/// Three steps of every kernel, so that springs build up, slide and stick.
+template <int Dim>
+void expect_same_at_any_width(const Choice& c, int pairs) {
+  const LawTable laws = laws_of(c.num_materials, c.dashpots, c.no_tension);
+  const PeriodicBox box = box_of<Dim>(c.periodic);
+  const int first_law = c.has_bonds ? 0 : 1;
+  Sample<Dim> sample(40, pairs, laws.size(), 11);
+  for (auto& code : sample.list.code)
+    code = std::max<std::uint8_t>(code, static_cast<std::uint8_t>(first_law));
+  if (pairs > 4) {
+    sample.barely(1, true);
+    sample.barely(3, false);
+  }
+  for (const bool kept : {false, true}) {
+    std::vector<Sample<Dim>> after;
+    for (const VectorWidth width : vector_widths()) {
+      after.push_back(sample);
+      const KernelSet kernels = make_kernels(Dim, width, laws, c.has_bonds, box);
+      for (int n = 0; n < 3; ++n)
+        (kept ? kernels.pairs_kept : kernels.pairs)(after.back().job(laws, box));
+    }
+    for (std::size_t w = 1; w < after.size(); ++w) {
+      const auto what = fmt::format(
+          "{}, {}D, {} pairs, {} materials, dashpots {}, clamp {}, bonds {}, periodic {}, kept {}",
+          name_of(vector_widths()[w]), Dim, pairs, c.num_materials, static_cast<int>(c.dashpots),
+          c.no_tension, c.has_bonds, c.periodic, kept);
+      ASSERT_TRUE(same_bits(after[w].force, after[0].force)) << what;
+      ASSERT_TRUE(same_values(after[w].list.spring, after[0].list.spring)) << what;
+      ASSERT_TRUE(same_values(after[w].list.result, after[0].list.result)) << what;
+    }
+  }
+}
+
+TEST(Kernels, GiveTheSameBitsAtAnyWidthIn2D) {
+  for (const Choice& c : choices()) expect_same_at_any_width<2>(c, 200);
+}
+
+TEST(Kernels, GiveTheSameBitsAtAnyWidthIn3D) {
+  for (const Choice& c : choices()) expect_same_at_any_width<3>(c, 200);
+}
+
+TEST(Kernels, PaddingOfTheLastBatchDoesNothing) {
+  for (int pairs = 1; pairs <= 17; ++pairs) {
+    for (const bool periodic : {false, true}) {
+      expect_same_at_any_width<2>({2, Dashpots::Both, true, true, periodic}, pairs);
+      expect_same_at_any_width<3>({2, Dashpots::Both, true, true, periodic}, pairs);
+    }
+  }
+  Sample<2> empty(4, 0, 2, 1);
+  empty.list.push(4, 5, 0);
+  empty.list.pad(4);
+  empty.list.reset_springs<2>();
+  empty.list.result.assign(8 * Layout<2>::kForce, 7.0);
+  const LawTable laws = laws_of(1, Dashpots::Critical, false);
+  for (const VectorWidth width : vector_widths()) {
+    make_kernels(2, width, laws, true, box_of<2>(true))
+        .pairs_kept(empty.job(laws, box_of<2>(true)));
+    EXPECT_TRUE(std::ranges::all_of(empty.force, [](double f) { return f == 0.0; }));
+    EXPECT_TRUE(std::ranges::all_of(empty.list.result, [](double f) { return f == 0.0; }));
+  }
+}
+
+TEST(Kernels, SampleHasPairsThatSlideStickAndDoNotTouch) {
+  const LawTable laws = laws_of(2, Dashpots::Constant, true);
+  Sample<2> sample(40, 200, laws.size(), 11);
+  for (int n = 0; n < 3; ++n)
+    make_kernels(2, VectorWidth::Scalar, laws, true, {}).pairs_kept(sample.job(laws, {}));
+  int apart = 0, sliding = 0, sticking = 0;
+  for (std::size_t k = 0; k < 200; ++k) {
+    if (sample.list.code[k] == 0) continue;
+    const double* f = sample.list.result.data() + 4 * k;
+    const double mu = laws.view().rows[LawView::kRow * sample.list.code[k] + LawView::Mu];
+    const double ft = std::fabs(f[2]), total = std::hypot(f[0], f[1]),
+                 fn = std::sqrt(std::max(0.0, total * total - ft * ft));
+    if (total == 0.0)
+      ++apart;
+    else if (ft > 0.9999 * mu * fn)
+      ++sliding;
+    else
+      ++sticking;
+  }
+  EXPECT_GT(apart, 10);
+  EXPECT_GT(sliding, 10);
+  EXPECT_GT(sticking, 10);
+}
+
+template <int Dim>
+void expect_antisymmetric(const Choice& c) {
+  using L = Layout<Dim>;
+  const LawTable laws = laws_of(c.num_materials, c.dashpots, c.no_tension);
+  const PeriodicBox box = box_of<Dim>(c.periodic);
+  Sample<Dim> there(40, 120, laws.size(), 21), back = there;
+  for (std::size_t k = 0; k < 120; ++k) std::swap(back.list.i[k], back.list.j[k]);
+  const KernelSet kernels = make_kernels(Dim, VectorWidth::Scalar, laws, true, box);
+
+  for (int n = 0; n < 3; ++n) {
+    kernels.pairs_kept(there.job(laws, box));
+    kernels.pairs_kept(back.job(laws, box));
+  }
+
+  for (std::size_t k = 0; k < 120; ++k) {
+    const double *f = there.list.result.data() + k * L::kForce,
+                 *g = back.list.result.data() + k * L::kForce;
+    for (int q = 0; q < Dim; ++q) ASSERT_EQ(f[q], -g[q]);
+    for (int q = L::kTorque; q < L::kTorque + kSpins<Dim>; ++q) ASSERT_EQ(f[q], g[q]);
+    for (int q = 0; q < L::kSprings; ++q) {
+      const auto at = static_cast<std::int64_t>(k);
+      ASSERT_EQ(there.list.template springs<Dim>(at)[q * kBatch],
+                (Dim == 3 ? -1.0 : 1.0) * back.list.template springs<Dim>(at)[q * kBatch]);
+    }
+  }
+}
+
+TEST(Kernels, SwappingAPairNegatesItsForceAndKeepsItsTorqueToTheBit) {
+  for (const Choice& c : choices()) {
+    expect_antisymmetric<2>(c);
+    expect_antisymmetric<3>(c);
+  }
+}
+
+template <int Dim>
+void expect_masks() {
+  for (const bool periodic : {false, true}) {
+    const LawTable laws = laws_of(2, Dashpots::Constant, true);
+    const PeriodicBox box = box_of<Dim>(periodic);
+    Sample<Dim> sample(40, 200, laws.size(), 31);
+    for (auto& code : sample.list.code) code = std::max<std::uint8_t>(code, 1);
+    sample.barely(1, true);
+    sample.barely(3, false);
+    make_kernels(Dim, VectorWidth::Scalar, laws, true, box).pairs_kept(sample.job(laws, box));
+    for (const VectorWidth width : vector_widths()) {
+      const KernelSet kernels = make_kernels(Dim, width, laws, true, box);
+      if (kernels.narrow == nullptr) continue;
+      std::vector<std::uint8_t> masks(sample.list.i.size() / kBatch, 0xaa);
+
+      kernels.narrow(sample.job(laws, box), masks.data());
+
+      for (std::size_t k = 0; k < 200; ++k) {
+        const double* f = sample.list.result.data() + k * Layout<Dim>::kForce;
+        const bool acts =
+            std::any_of(f, f + Layout<Dim>::kForce, [](double c) { return c != 0.0; });
+        const bool touches = ((masks[k / 8] >> (k % 8)) & 1U) != 0;
+        if (acts) {
+          EXPECT_TRUE(touches) << name_of(width) << ", pair " << k;
+        }
+        if (k == 1) {
+          EXPECT_TRUE(touches) << name_of(width);
+        }
+        if (k == 3) {
+          EXPECT_FALSE(touches) << name_of(width);
+        }
+      }
+    }
+  }
+}
+
+TEST(Kernels, NarrowPhaseMarksEveryPairThatActs) {
+  expect_masks<2>();
+  expect_masks<3>();
+}
+
+template <int Dim>
+void expect_same_rows() {
+  using L = Layout<Dim>;
+  for (const bool damped : {false, true}) {
+    std::vector<Sample<Dim>> after;
+    for (const VectorWidth width : vector_widths()) {
+      after.emplace_back(41, 8, 2, 41);
+      Sample<Dim>& s = after.back();
+      for (std::size_t c = 0; c < s.force.size(); ++c)
+        s.force[c] = std::sin(static_cast<double>(c));
+      for (std::size_t i = 0; i < 43; ++i) s.force[i * L::kForce + 3] = 0.0;
+      const KernelSet kernels =
+          make_kernels(Dim, width, laws_of(1, Dashpots::Constant, true), false, {});
+      RowJob job{s.motion.data(),   s.spin.data(),     s.force.data(), 1, 40, 1e-3, 2e-3,
+                 {0.1, -9.81, 0.3}, damped ? 0.3 : 0.0};
+      (damped ? kernels.rows_damped : kernels.rows)(job);
+    }
+    for (std::size_t w = 1; w < after.size(); ++w) {
+      EXPECT_TRUE(same_bits(after[w].motion, after[0].motion)) << name_of(vector_widths()[w]);
+      EXPECT_TRUE(same_bits(after[w].spin, after[0].spin)) << name_of(vector_widths()[w]);
+      EXPECT_TRUE(same_bits(after[w].force, after[0].force)) << name_of(vector_widths()[w]);
+    }
+  }
+}
+
+TEST(Kernels, AdvanceRowsToTheSameBitsAtAnyWidth) {
+  expect_same_rows<2>();
+  expect_same_rows<3>();
+}
+
+}  // namespace
+}  // namespace barchan::test

@@ -1,0 +1,222 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <random>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <barchan/core/lane.hpp>
+
+// Lanes side by side without ranks or threads: what passes between them goes from hand to hand.
+
+namespace barchan::test {
+
+inline ContactTable table_of(int num_materials, bool no_tension = true) {
+  ContactTable t{num_materials, {}, no_tension};
+  for (int a = 0; a < num_materials; ++a) {
+    for (int b = 0; b < num_materials; ++b) {
+      ContactConstants c;
+      c.kn = 1e4 + 1e3 * (a + b);
+      c.kt = 3e3 + 1e2 * (a * b);
+      c.mu = 0.1 + 0.2 * (a + b);
+      c.cn.constant = 3.0 + a + b;
+      c.ct.constant = 1.0 + a * b;
+      t.constants.push_back(c);
+    }
+  }
+  return t;
+}
+
+template <int Dim>
+World<Dim> world_of(const Domain& domain, double cutoff, double skin, std::int64_t num_particles,
+                    bool has_bonds = false) {
+  World<Dim> w;
+  w.grid = Grid<Dim>(domain, cutoff, num_particles);
+  w.laws = LawTable(table_of(2));
+  w.kernels = make_kernels(Dim, VectorWidth::Scalar, w.laws, has_bonds, w.grid.box());
+  w.skin = skin;
+  w.dt = 1e-4;
+  w.num_particles = num_particles;
+  return w;
+}
+
+/// Particles anywhere in the domain, radii in [0.6, 1]·radius, ids in no order.
+inline std::vector<ParticleData> random_particles(int dimension, const Domain& domain, int count,
+                                                  double radius, unsigned seed) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::vector<ParticleData> all(static_cast<std::size_t>(count));
+  std::vector<std::int64_t> ids;
+  for (int p = 0; p < count; ++p) ids.push_back(3 * p + 1);
+  std::shuffle(ids.begin(), ids.end(), random);
+  for (int p = 0; p < count; ++p) {
+    auto& q = all[static_cast<std::size_t>(p)];
+    q.id = ids[static_cast<std::size_t>(p)];
+    q.type = p % 2;
+    q.radius = radius * (0.6 + 0.4 * unit(random));
+    q.density = 1000.0;
+    q.fixed = p % 7 == 0;
+    for (int a = 0; a < dimension; ++a) {
+      q.position[a] = domain.lo[a] + unit(random) * (domain.hi[a] - domain.lo[a]);
+      q.velocity[a] = unit(random) - 0.5;
+      q.omega[a] = dimension == 3 ? unit(random) : 0.0;
+    }
+    if (dimension == 2) q.omega[2] = unit(random);
+  }
+  return all;
+}
+
+/// Springs by ids (lower, higher), as seen from the lower id.
+using Springs = std::map<std::pair<std::int64_t, std::int64_t>, std::vector<double>>;
+
+template <int Dim>
+class Lanes {
+ public:
+  /// @param cuts  first slab of every lane, and the number of slabs
+  Lanes(World<Dim>& world, std::vector<int> cuts) : world_(&world), cuts_(std::move(cuts)) {
+    for (std::size_t l = 0; l + 1 < cuts_.size(); ++l)
+      lanes_.push_back(std::make_unique<Lane<Dim>>(world));
+    for (std::size_t l = 0; l < lanes_.size(); ++l) place_band(l);
+  }
+
+  void seed(std::span<const ParticleData> all, std::span<const BondData> bonds = {}) {
+    std::map<std::int64_t, Vec3> at;
+    for (const auto& p : all) at[p.id] = p.position;
+    std::vector<double> lengths;
+    for (const BondData& b : bonds) lengths.push_back((at[b.id_a] - at[b.id_b]).norm());
+    for (std::size_t l = 0; l < lanes_.size(); ++l) {
+      std::vector<ParticleData> mine;
+      std::vector<char> bonded;
+      for (const auto& p : all) {
+        const int slab = world_->grid.coordinate(p.position.data(), 0);
+        if (slab < cuts_[l] || slab >= cuts_[l + 1]) continue;
+        mine.push_back(p);
+        bonded.push_back(std::ranges::any_of(
+                             bonds, [&](const auto& b) { return b.id_a == p.id || b.id_b == p.id; })
+                             ? 1
+                             : 0);
+      }
+      lanes_[l]->seed(cuts_[l], cuts_[l + 1], mine, bonds, lengths, bonded);
+      lanes_[l]->order();
+    }
+    exchange_ghosts();
+  }
+
+  void rebuild(const std::vector<int>& cuts) {
+    cuts_ = cuts;
+    std::vector<std::vector<std::byte>> left(lanes_.size()), right(lanes_.size());
+    for (std::size_t l = 0; l < lanes_.size(); ++l)
+      lanes_[l]->begin_rebuild(cuts_[l], cuts_[l + 1], left[l], right[l]);
+    for (std::size_t l = 0; l < lanes_.size(); ++l) {
+      if (lanes_[l]->band(Lane<Dim>::Left).exists) lanes_[l]->absorb(right[before(l)]);
+      if (lanes_[l]->band(Lane<Dim>::Right).exists) lanes_[l]->absorb(left[after(l)]);
+    }
+    for (auto& lane : lanes_) lane->order();
+    exchange_ghosts();
+  }
+
+  void step() {
+    const StepFrame frame{world_->dt, {}, 0.0};
+    for (auto& lane : lanes_) {
+      lane->begin_step(frame);
+      for (int c = 0; c < lane->num_chunks(); ++c) lane->run_chunk(c);
+    }
+    for (auto& lane : lanes_) {
+      for (const auto side : {Lane<Dim>::Left, Lane<Dim>::Right}) {
+        if (lane->band(side).exists) lane->finish_band(side);
+      }
+    }
+    for (std::size_t l = 0; l < lanes_.size(); ++l) {
+      if (lanes_[l]->band(Lane<Dim>::Left).exists)
+        send(before(l), Lane<Dim>::Right, l, Lane<Dim>::Left);
+      if (lanes_[l]->band(Lane<Dim>::Right).exists)
+        send(after(l), Lane<Dim>::Left, l, Lane<Dim>::Right);
+    }
+  }
+
+  /// Every contact's spring; a pair across a cut must be the same on both sides.
+  [[nodiscard]] Springs springs(bool& sides_agree) const {
+    Springs all;
+    sides_agree = true;
+    for (const auto& lane : lanes_) {
+      const auto& store = lane->store();
+      const auto take = [&](const PairList& list) {
+        for (std::int64_t k = 0; k < list.size(); ++k) {
+          if (!list.template has_spring<Dim>(k)) continue;
+          const auto at = static_cast<std::size_t>(k);
+          const std::int64_t a = store.id[static_cast<std::size_t>(list.i[at])],
+                             b = store.id[static_cast<std::size_t>(list.j[at])];
+          std::vector<double> s;
+          for (int c = 0; c < Layout<Dim>::kSprings; ++c) {
+            const double value = list.template springs<Dim>(k)[c * kBatch];
+            s.push_back(Dim == 3 && a > b ? -value : value);
+          }
+          const auto [it, is_new] = all.try_emplace(std::minmax(a, b), s);
+          if (!is_new && it->second != s) sides_agree = false;
+        }
+      };
+      for (const auto name : {Lane<Dim>::HeldLow, Lane<Dim>::Owned, Lane<Dim>::HeldHigh})
+        take(lane->list(name));
+      for (const auto side : {Lane<Dim>::Left, Lane<Dim>::Right}) {
+        if (lane->band(side).exists) take(lane->band(side).across);
+      }
+    }
+    return all;
+  }
+
+  [[nodiscard]] std::uint64_t digest() const {
+    std::uint64_t sum = 0;
+    for (const auto& lane : lanes_) sum += lane->digest();
+    return sum;
+  }
+  [[nodiscard]] std::size_t size() const { return lanes_.size(); }
+  Lane<Dim>& operator[](std::size_t l) { return *lanes_[l]; }
+
+ private:
+  [[nodiscard]] std::size_t before(std::size_t l) const {
+    return (l + lanes_.size() - 1) % lanes_.size();
+  }
+  [[nodiscard]] std::size_t after(std::size_t l) const { return (l + 1) % lanes_.size(); }
+
+  void place_band(std::size_t l) {
+    const bool wraps = world_->grid.is_periodic(0) && lanes_.size() > 1;
+    Band &left = lanes_[l]->band(Lane<Dim>::Left), &right = lanes_[l]->band(Lane<Dim>::Right);
+    left.exists = l > 0 || wraps;
+    right.exists = l + 1 < lanes_.size() || wraps;
+    left.ghosts_first = l > 0;
+    right.ghosts_first = wraps && l + 1 == lanes_.size();
+  }
+
+  void exchange_ghosts() {
+    std::vector<std::vector<std::byte>> left(lanes_.size()), right(lanes_.size());
+    for (std::size_t l = 0; l < lanes_.size(); ++l) {
+      if (lanes_[l]->band(Lane<Dim>::Left).exists) lanes_[l]->pack_ghosts(Lane<Dim>::Left, left[l]);
+      if (lanes_[l]->band(Lane<Dim>::Right).exists)
+        lanes_[l]->pack_ghosts(Lane<Dim>::Right, right[l]);
+      lanes_[l]->list_owned();
+    }
+    for (std::size_t l = 0; l < lanes_.size(); ++l) {
+      lanes_[l]->take_ghosts(right[before(l)], left[after(l)]);
+      lanes_[l]->restore_history();
+      lanes_[l]->cut_chunks(64);
+    }
+  }
+
+  void send(std::size_t from, typename Lane<Dim>::Side from_side, std::size_t to,
+            typename Lane<Dim>::Side to_side) {
+    std::vector<std::byte> message(lanes_[from]->halo_bytes(from_side));
+    lanes_[from]->pack_halo(from_side, message);
+    lanes_[to]->unpack_halo(to_side, message);
+  }
+
+  World<Dim>* world_;
+  std::vector<int> cuts_;
+  std::vector<std::unique_ptr<Lane<Dim>>> lanes_;
+};
+
+}  // namespace barchan::test
