@@ -123,7 +123,7 @@ void rows(benchmark::State& state, VectorWidth width) {
 template <int Dim>
 void steps(benchmark::State& state, VectorWidth width) {
   const auto sample = make_sample<Dim>(state.range(0), width);
-  for (auto _ : state) step(*sample->lane, 1e-9);
+  for (auto _ : state) step(*sample->lane);
   const auto n = static_cast<double>(state.range(0)),
              touching = static_cast<double>(sample->touching);
   const ItemCost pair = pair_cost<Dim>(touching, n);

@@ -12,13 +12,21 @@
 namespace barchan::micro {
 namespace {
 
+Triad widest_triad() {
+#ifdef BARCHAN_HAS_X86_KERNELS
+  if (vector_widths().back() == VectorWidth::Avx512) return &triad_avx512;
+  if (vector_widths().back() == VectorWidth::Avx2) return &triad_avx2;
+#endif
+  return &triad_scalar;
+}
+
 void triad(benchmark::State& state) {
-  const auto n = static_cast<std::size_t>(state.range(0)) * 1024 / (3 * sizeof(double));
-  AlignedVector<double> a(n, 0.0), b(n, 1.0), c(n, 2.0);
+  const std::int64_t n = state.range(0) * 1024 / (3 * 64) * 8;
+  const auto size = static_cast<std::size_t>(n);
+  AlignedVector<double> a(size, 0.0), b(size, 1.0), c(size, 2.0);
+  const Triad run = widest_triad();
   for (auto _ : state) {
-    double* __restrict x = a.data();
-    const double* __restrict y = b.data(), * __restrict z = c.data();
-    for (std::size_t i = 0; i < n; ++i) x[i] = y[i] + 3.0 * z[i];
+    run(a.data(), b.data(), c.data(), n);
     benchmark::ClobberMemory();
   }
   report(state, static_cast<double>(n), {24.0, 24.0, 2.0});

@@ -9,9 +9,25 @@ namespace barchan::micro {
 
 inline constexpr int kChains = 6;
 
+/// a = b + 3·c. @pre n is a multiple of 8, arrays are on cache lines
+using Triad = void (*)(double* a, const double* b, const double* c, std::int64_t n);
+void triad_scalar(double* a, const double* b, const double* c, std::int64_t n);
+void triad_avx2(double* a, const double* b, const double* c, std::int64_t n);
+void triad_avx512(double* a, const double* b, const double* c, std::int64_t n);
+
 double peak_scalar(std::int64_t rounds);
 double peak_avx2(std::int64_t rounds);
 double peak_avx512(std::int64_t rounds);
+
+template <class Real>
+[[gnu::always_inline]] inline void triad_of(double* a, const double* b, const double* c,
+                                            std::int64_t n) {
+  constexpr auto kLanes = static_cast<std::int64_t>(sizeof(Real) / sizeof(double));
+  for (std::int64_t i = 0; i < n; i += kLanes) {
+    *reinterpret_cast<Real*>(a + i) =
+        *reinterpret_cast<const Real*>(b + i) + 3.0 * *reinterpret_cast<const Real*>(c + i);
+  }
+}
 
 template <class Real>
 [[gnu::always_inline]] inline double peak_of(std::int64_t rounds, Real one) {

@@ -61,7 +61,7 @@ template <int Dim>
 void part_of_rebuild(benchmark::State& state, Part part) {
   const auto sample = make_sample<Dim>(state.range(0), vector_widths().back());
   Lane<Dim>& lane = *sample->lane;
-  step(lane, 1e-9);  // history to carry
+  step(lane);  // history to carry
   for (auto _ : state) state.SetIterationTime(rebuild(lane)[part]);
   const auto n = static_cast<double>(state.range(0));
   report(state, n, least<Dim>(part, static_cast<double>(lane.num_pairs()) / n));

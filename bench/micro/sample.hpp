@@ -16,9 +16,8 @@ struct Sample {
   std::int64_t touching = 0;               ///< pairs of `lane`
 };
 
-/// @param count  particles; radii spread by a tenth about 0.05 (2D) or 0.5 (3D), and grown by 0.5 %
-/// so that neighbours
-///               touch, as in a settled bed
+/// @param count  particles; radii spread by a tenth about 0.05 (2D) or 0.5 (3D); they touch as in a
+///               settled bed and creep, so that contacts have history, but stay where they are
 /// @param has_cut  two lanes beside each other, with bands and ghosts
 template <int Dim>
 std::unique_ptr<Sample<Dim>> make_sample(std::int64_t count, VectorWidth width,
@@ -26,6 +25,6 @@ std::unique_ptr<Sample<Dim>> make_sample(std::int64_t count, VectorWidth width,
 
 /// One step of a lane without a cut.
 template <int Dim>
-void step(Lane<Dim>& lane, double dt);
+void step(Lane<Dim>& lane);
 
 }  // namespace barchan::micro
