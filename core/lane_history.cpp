@@ -1,11 +1,32 @@
 #include <algorithm>
+#include <cstdlib>
+#include <string>
 
+#include <barchan/core/error.hpp>
 #include <barchan/core/lane.hpp>
 
 // Contact history on its way through a rebuild. Pairs of rows that both stay are carried by row; all others as
 // loose contacts, by the row of one particle and the id of the other.
 
 namespace barchan {
+namespace {
+
+/// A longer bond would reach past a band to rows that do not wait for ghosts. Refused on one rank too, where it would do no
+/// harm, so that a run does not depend on the number of ranks.
+template <int Dim>
+void require_short_bonds(const Grid<Dim>& grid, const ParticleStore<Dim>& store, const BondSet<Dim>& bonds) {
+  const auto slab = [&](std::int32_t row) { return static_cast<int>(store.key[static_cast<std::size_t>(row)] / grid.slab_size()); };
+  for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds.bonds().size()); ++b) {
+    int apart = std::abs(slab(bonds.end_a(b)) - slab(bonds.end_b(b)));
+    if (grid.is_periodic(0)) apart = std::min(apart, grid.num_slabs() - apart);
+    if (apart <= 1) continue;
+    const auto& bond = bonds.bonds()[static_cast<std::size_t>(b)];
+    throw RunError("the bond between particles " + std::to_string(bond.id_a) + " and " + std::to_string(bond.id_b) +
+                   " has grown longer than a cell is wide: give it a tensile strength, or a larger search.skin");
+  }
+}
+
+}  // namespace
 
 template <int Dim>
 void Lane<Dim>::collect_loose(std::vector<std::vector<LooseContact>>& leaving, const std::vector<std::int8_t>& goes,
@@ -126,6 +147,7 @@ void Lane<Dim>::restore_history() {
   }
   loose_.clear();
   bonds_.resolve(store_);
+  require_short_bonds(world_->grid, store_, bonds_);
 
   walls_.search(store_, world_->wall_specs, world_->walls, world_->skin);
   for (WallContact<Dim>& c : old_walls_) c.row = new_row_[static_cast<std::size_t>(c.row)];

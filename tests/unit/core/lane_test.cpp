@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include <barchan/core/error.hpp>
+
 #include "lane_fixture.hpp"
 
 namespace barchan::test {
@@ -131,6 +133,31 @@ TEST(Lane, BondsMoveWithTheirParticlesAndKeepTheirState) {
   ASSERT_EQ(before.size(), 12U);
   EXPECT_NE(before.at(3)[0], 0.0);
   EXPECT_EQ(after, before);
+}
+
+TEST(Lane, RefusesABondLongerThanACellOnAnyNumberOfLanes) {
+  const Domain domain = long_box<2>(false);
+  const double width = 14.0 / 12.0;
+  for (const auto& cuts : {std::vector<int>{0, 12}, {0, 5, 12}, {0, 6, 12}, {0, 4, 12}}) {
+    std::vector<ParticleData> pair(2);
+    for (int p = 0; p < 2; ++p) {
+      pair[static_cast<std::size_t>(p)] = {
+          p + 1,        0,    0.5, 1000.0, Vec3((4.5 + p) * width, 1.5, 0.0), Vec3::Zero(),
+          Vec3::Zero(), false};
+    }
+    World<2> world = world_of<2>(domain, kCutoff, kSkin, 2, true);
+    world.bond_laws = {BondLaw{"b", 1e5}};
+    Lanes<2> lanes(world, cuts);
+    lanes.seed(pair, std::vector<BondData>{{1, 2, 0}});
+    for (std::size_t l = 0; l < lanes.size(); ++l) {
+      auto& store = lanes[l].store();
+      for (std::int32_t i = 0; i < store.num_owned; ++i) {
+        if (store.id[static_cast<std::size_t>(i)] == 2) store.x(i)[0] += width;
+      }
+    }
+
+    EXPECT_THROW(lanes.rebuild(cuts), RunError) << "second lane from slab " << cuts[1];
+  }
 }
 
 TEST(Lane, TellsAfterARebuildThatAParticleHadOutrunTheSkinBeforeIt) {
