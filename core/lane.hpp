@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <unordered_map>
 #include <vector>
 
 #include <barchan/core/bonds.hpp>
@@ -16,6 +17,8 @@
 #include <barchan/core/walls.hpp>
 
 namespace barchan {
+
+struct CheckpointShare;
 
 /// What all lanes of a run share.
 template <int Dim>
@@ -126,6 +129,16 @@ class Lane {
   /// @param chunk_pairs  pairs per chunk of the step; any number gives the same bits
   void cut_chunks(std::int64_t chunk_pairs);
 
+  // ---- checkpoints (lane_checkpoint.cpp)
+  /// Everything that the next step depends on, between steps. Reuses the memory of `share`.
+  void save(CheckpointShare& share);
+  /// Instead of seed: owns the particles of a checked share as they were at their last rebuild, and queues the history of
+  /// contacts, walls and bonds that have an end among them. order() … restore_history() follow, then put_back().
+  /// @pre they lie in the slabs. Errors: RunError for an id that comes twice
+  void restore(int slab_begin, int slab_end, const CheckpointShare& share);
+  /// Particles where they were when they were saved, and as fast; ghosts must be refreshed.
+  void put_back(const CheckpointShare& share);
+
   // ---- between steps, ghosts up to date (lane_measure.cpp)
   [[nodiscard]] Measures measure(const Vec3& gravity);
   [[nodiscard]] Travel travel() const;  ///< since the last rebuild; needs no ghosts
@@ -166,8 +179,6 @@ class Lane {
     std::int64_t partner = 0;
     double spring[L::kSprings] = {};
   };
-  /// Queues history from outside (a checkpoint); `handle` counts rows as absorbed since begin_rebuild.
-  void queue_history(const LooseContact& contact) { loose_.push_back(contact); }
 
  private:
   struct Block {
@@ -181,6 +192,7 @@ class Lane {
   };
   static constexpr std::int64_t kBlockPairs = 32 * kBatch;  ///< a block's rows stay in the first cache
 
+  void queue_links(const CheckpointShare& share, const std::unordered_map<std::int64_t, std::int32_t>& row_of);
   [[nodiscard]] int direction_of(int slab) const;  ///< 0 here, 1 left, 2 right
   [[nodiscard]] bool computes_bond(std::int32_t bond) const;
   [[nodiscard]] std::pair<bool, bool> bond_leaves(std::int32_t bond) const;

@@ -26,9 +26,10 @@ std::int64_t Simulation::EngineOf<Dim>::run(std::int64_t num_steps) {
 
 template <int Dim>
 void Simulation::EngineOf<Dim>::step() {
+  if (keeper_) keep_checkpoints();
   update_stage();
   update_lists();
-  if (schedule_->is_check_due(step_)) schedule_->begin_check(travel(), stop_is_requested());
+  if (schedule_->is_check_due(step_)) schedule_->begin_check(travel(), {stop_is_requested(), wants_checkpoint()});
   schedule_->poll();
   plates_->drive(world_.walls, step_);
 
@@ -47,6 +48,10 @@ template <int Dim>
 void Simulation::EngineOf<Dim>::update_lists() {
   const bool travelled = schedule_->must_rebuild(step_);
   stopped_ = stopped_ || schedule_->stop_agreed();
+  if (schedule_->take_save_agreed()) {
+    must_save_ = true;
+    forget_checkpoint_request();
+  }
   if (!travelled && !must_rebuild_) return;
   const double begin = now();
   strip_->rebuild([this](const std::function<void(int)>& body) { graph_->for_each_lane(body); });

@@ -3,6 +3,8 @@
 #include <memory>
 #include <optional>
 
+#include <barchan/tasks/checkpoint_keeper.hpp>
+#include <barchan/tasks/checkpoint_load.hpp>
 #include <barchan/tasks/plates.hpp>
 #include <barchan/tasks/rebuild_schedule.hpp>
 #include <barchan/tasks/simulation.hpp>
@@ -28,6 +30,8 @@ class Simulation::Engine {
   [[nodiscard]] virtual std::string vector_width() const = 0;
   [[nodiscard]] virtual double skin() const = 0;
 
+  virtual void save_checkpoint() = 0;
+
   Engine(const Model& model, MPI_Comm comm, RunOptions options)
       : model_(model), options_(std::move(options)), communicator_(comm) {}
 
@@ -38,6 +42,14 @@ class Simulation::Engine {
   std::int64_t num_particles_ = 0;
   int stage_ = 0;
   bool stopped_ = false;
+  std::unique_ptr<CheckpointKeeper> keeper_;
+};
+
+/// What the particles of the start determine, and all lists with it.
+struct WorldScale {
+  double skin = 0.0, reach = 0.0;  ///< [m]
+  std::int64_t num_particles = 0;
+  bool has_bonds = false;
 };
 
 /// The time loop: when to rebuild, which stage it is, how walls move. One step itself is StepGraph.
@@ -45,6 +57,8 @@ template <int Dim>
 class Simulation::EngineOf final : public Simulation::Engine {
  public:
   EngineOf(const Model& model, const ParticleSet& particles, MPI_Comm comm, const RunOptions& options);
+
+  EngineOf(const Model& model, const std::string& checkpoint, MPI_Comm comm, const RunOptions& options);
 
   std::int64_t run(std::int64_t num_steps) override;
   void for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const override;
@@ -58,10 +72,18 @@ class Simulation::EngineOf final : public Simulation::Engine {
   [[nodiscard]] std::int64_t num_owned() const override { return strip_->num_owned(); }
   [[nodiscard]] std::string vector_width() const override { return name_of(world_.kernels.width); }
   [[nodiscard]] double skin() const override { return world_.skin; }
+  void save_checkpoint() override;
 
  private:
-  void make_world(const ParticleSet& particles);
-  void make_strip(const ParticleSet& particles);
+  void make_world(const WorldScale& scale);
+  void make_strip();  ///< without particles
+  void make_loop();
+  void restore(const OpenCheckpoint& checkpoint);
+  void restore_particles(const OpenCheckpoint& checkpoint);
+  void check_restored(const OpenCheckpoint& checkpoint);
+  [[nodiscard]] CheckpointState state();
+  void keep_checkpoints();
+  [[nodiscard]] bool wants_checkpoint() const;
   void step();
   void update_lists();
   void update_stage();
@@ -79,6 +101,8 @@ class Simulation::EngineOf final : public Simulation::Engine {
   std::vector<Vec3> walls_at_rebuild_;
   std::int64_t stage_begin_ = 0;
   bool must_rebuild_ = false;
+  bool must_save_ = false;  ///< all ranks agreed to
+  WorldScale scale_;
   double loop_seconds_ = 0.0, rebuild_seconds_ = 0.0;
 };
 

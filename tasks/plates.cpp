@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <barchan/core/error.hpp>
+
 namespace barchan {
 namespace {
 
@@ -74,9 +76,29 @@ void Plates::move(std::span<WallState> states) const {
   }
 }
 
-void Plates::finish() {
-  for (auto& reduction : reductions_) {
-    if (reduction && reduction->is_in_flight()) reduction->wait();
+std::vector<SavedPlateForces> Plates::forces() {
+  std::vector<SavedPlateForces> saved(kLag);
+  for (std::size_t slot = 0; slot < saved.size(); ++slot) {
+    saved[slot].of_step = of_step_[slot];
+    if (of_step_[slot] < 0) continue;
+    reductions_[slot]->wait();
+    const auto sums = reductions_[slot]->sums();
+    saved[slot].digits.assign(sums.begin(), sums.end());
+  }
+  return saved;
+}
+
+void Plates::restore(std::span<const SavedPlateForces> forces, bool is_root) {
+  if (forces.size() != kLag) throw RunError("the checkpoint has forces on plates of another number of steps");
+  const std::size_t num_digits = 3 * kDigits * loaded_.size();
+  for (std::size_t slot = 0; slot < forces.size(); ++slot) {
+    of_step_[slot] = forces[slot].of_step;
+    if (of_step_[slot] < 0) continue;
+    if (loaded_.empty() || forces[slot].digits.size() != num_digits) {
+      throw RunError("the checkpoint has forces on another number of loaded plates");
+    }
+    const std::vector<std::int64_t> none(num_digits, 0);
+    reductions_[slot]->begin({}, is_root ? forces[slot].digits : none);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <barchan/comm/reduction.hpp>
+#include <barchan/core/checkpoint/state.hpp>
 #include <barchan/core/walls.hpp>
 
 namespace barchan {
@@ -29,8 +30,10 @@ class Plates {
   void collect(std::span<const WallSums> sums, std::int64_t step);
   /// After a step: walls move.
   void move(std::span<WallState> states) const;
-  /// Waits for what is in flight, for checkpoints and the end of a run.
-  void finish();
+  /// Forces that steps are still to use, by step % kLag; for checkpoints, between steps. Waits for what is in flight.
+  [[nodiscard]] std::vector<SavedPlateForces> forces();
+  /// Puts them back into flight. Collective. Errors: RunError when they are not of as many plates.
+  void restore(std::span<const SavedPlateForces> forces, bool is_root);
 
  private:
   void accelerate(WallState& state, const WallSpec& spec, const Vec3& force) const;

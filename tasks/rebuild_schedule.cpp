@@ -10,7 +10,7 @@
 namespace barchan {
 
 RebuildSchedule::RebuildSchedule(const Communicator& communicator, double skin, double dt, double gravity)
-    : reduction_(communicator, 4, 0), skin_(skin), dt_(dt), gravity_(gravity) {}
+    : reduction_(communicator, 5, 0), skin_(skin), dt_(dt), gravity_(gravity) {}
 
 int RebuildSchedule::next_interval(double distance, double speed, double skin, double dt, double gravity, int last) {
   const auto is_safe = [&](int n) {
@@ -23,8 +23,9 @@ int RebuildSchedule::next_interval(double distance, double speed, double skin, d
   return n;
 }
 
-void RebuildSchedule::begin_check(const Travel& mine, bool wants_stop) {
-  const double maxima[4] = {mine.distance2, mine.speed2, static_cast<double>(mine.outside), wants_stop ? 1.0 : 0.0};
+void RebuildSchedule::begin_check(const Travel& mine, Wishes wishes) {
+  const double maxima[5] = {mine.distance2, mine.speed2, static_cast<double>(mine.outside), wishes.stop ? 1.0 : 0.0,
+                            wishes.save ? 1.0 : 0.0};
   reduction_.begin(maxima, {});
 }
 
@@ -37,6 +38,7 @@ bool RebuildSchedule::must_rebuild(std::int64_t step) {
   reduction_.wait();
   const auto maxima = reduction_.maxima();
   stop_agreed_ = maxima[3] > 0.0;
+  save_agreed_ = maxima[4] > 0.0;
   const double distance = std::sqrt(maxima[0]), speed = std::sqrt(maxima[1]);
   if (!std::isfinite(distance) || !std::isfinite(speed)) {
     throw RunError(fmt::format("at step {} the state is no longer finite: a smaller time.step, more damping or less overlap at the "
@@ -62,6 +64,22 @@ void RebuildSchedule::rebuilt(std::int64_t step) {
   if (reduction_.is_in_flight()) reduction_.wait();  // a rebuild for another reason; the answer is stale
   interval_ = std::max(interval_ / 2, 1);
   check_step_ = step + interval_;
+}
+
+RebuildSchedule::State RebuildSchedule::state(std::int64_t step) {
+  State s{check_step_, interval_, check_step_ < step, {}};
+  if (!s.has_check) return s;
+  reduction_.wait();
+  std::copy_n(reduction_.maxima().begin(), s.check.size(), s.check.begin());
+  return s;
+}
+
+void RebuildSchedule::restore(const State& state) {
+  check_step_ = state.check_step;
+  interval_ = state.interval;
+  if (!state.has_check) return;
+  const double maxima[5] = {state.check[0], state.check[1], state.check[2], 0.0, 0.0};
+  reduction_.begin(maxima, {});
 }
 
 }  // namespace barchan

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <utility>
 
 #include <barchan/comm/reduction.hpp>
 #include <barchan/core/lane.hpp>
@@ -22,19 +24,37 @@ class RebuildSchedule {
   static constexpr int kLag = 2;
   static constexpr int kLongest = 16;
 
+  /// What a rank would like; all ranks learn with the answer whether some rank does.
+  struct Wishes {
+    bool stop = false, save = false;
+  };
+  /// What follows from the past, the same on every rank.
+  struct State {
+    std::int64_t check_step = 0;
+    int interval = 0;
+    bool has_check = false;         ///< begun, not yet answered
+    std::array<double, 3> check{};  ///< its answer: squared distance, squared speed, id of a particle outside
+  };
+
   RebuildSchedule(const Communicator& communicator, double skin, double dt, double gravity);
 
   /// Whether the check of step `step` is due, so that travel() must be called. Before the step.
   [[nodiscard]] bool is_check_due(std::int64_t step) const { return step == check_step_; }
-  /// @param wants_stop  this rank was asked to stop; all ranks learn it with the answer
-  void begin_check(const Travel& mine, bool wants_stop);
+  void begin_check(const Travel& mine, Wishes wishes);
 
   /// The decision for `step`, before it; waits for the reduction when its time has come.
   /// Errors, the same on every rank: RunError when a particle outran the skin, left the domain or is not finite.
   [[nodiscard]] bool must_rebuild(std::int64_t step);
   [[nodiscard]] bool stop_agreed() const { return stop_agreed_; }
+  /// Whether some rank wished to save; true once.
+  [[nodiscard]] bool take_save_agreed() { return std::exchange(save_agreed_, false); }
   void poll();  ///< lets the reduction advance
   void rebuilt(std::int64_t step);
+
+  /// For checkpoints, before `step`. Waits for a check's answer.
+  [[nodiscard]] State state(std::int64_t step);
+  /// As if the checks since the start had been made. Collective; @pre nothing is in flight
+  void restore(const State& state);
 
   /// The rule above. @return steps to the next check, or -1: rebuild
   static int next_interval(double distance, double speed, double skin, double dt, double gravity, int last);
@@ -44,7 +64,7 @@ class RebuildSchedule {
   double skin_, dt_, gravity_;
   std::int64_t check_step_ = 0;
   int interval_ = 0;
-  bool stop_agreed_ = false;
+  bool stop_agreed_ = false, save_agreed_ = false;
 };
 
 }  // namespace barchan

@@ -9,13 +9,19 @@
 namespace barchan {
 namespace {
 
-std::atomic<bool> stop_requested{false};
+std::atomic<bool> stop_requested{false}, checkpoint_requested{false};
 
 }  // namespace
 
 bool stop_is_requested() noexcept { return stop_requested.load(std::memory_order_relaxed); }
 
 void Simulation::request_stop() noexcept { stop_requested.store(true, std::memory_order_relaxed); }
+
+bool checkpoint_is_requested() noexcept { return checkpoint_requested.load(std::memory_order_relaxed); }
+
+void forget_checkpoint_request() noexcept { checkpoint_requested.store(false, std::memory_order_relaxed); }
+
+void Simulation::request_checkpoint() noexcept { checkpoint_requested.store(true, std::memory_order_relaxed); }
 
 std::vector<std::string> exchange_choices() {
   auto names = exchange_names();
@@ -27,6 +33,14 @@ Simulation::Simulation(const Model& model, const ParticleSet& particles, MPI_Com
   if (model.dimension == 2) engine_ = std::make_unique<EngineOf<2>>(model, particles, communicator, options);
   else if (model.dimension == 3) engine_ = std::make_unique<EngineOf<3>>(model, particles, communicator, options);
   else throw InputError("dimension " + std::to_string(model.dimension), "2 or 3");
+}
+
+Simulation::Simulation(std::unique_ptr<Engine> engine) : engine_(std::move(engine)) {}
+
+Simulation Simulation::restore(const Model& model, const std::string& checkpoint, MPI_Comm communicator, const RunOptions& options) {
+  if (model.dimension == 2) return Simulation(std::make_unique<EngineOf<2>>(model, checkpoint, communicator, options));
+  if (model.dimension == 3) return Simulation(std::make_unique<EngineOf<3>>(model, checkpoint, communicator, options));
+  throw InputError("dimension " + std::to_string(model.dimension), "2 or 3");
 }
 
 Simulation::~Simulation() = default;
@@ -50,6 +64,17 @@ void Simulation::clear_forces() { engine_->clear_forces(); }
 Measures Simulation::measure() { return engine_->measure(); }
 std::span<const WallState> Simulation::walls() const { return engine_->walls(); }
 std::uint64_t Simulation::digest() { return engine_->digest(); }
+void Simulation::keep_checkpoints(const std::string& folder, const CheckpointSpec& spec) {
+  engine_->keeper_ = std::make_unique<CheckpointKeeper>(engine_->communicator_, folder, engine_->model_, spec, engine_->step_);
+}
+void Simulation::save_checkpoint() {
+  if (engine_->keeper_->last_begun() != engine_->step_) engine_->save_checkpoint();
+}
+bool Simulation::finish_checkpoints() { return engine_->keeper_ == nullptr || engine_->keeper_->finish(); }
+std::vector<std::string> Simulation::take_checkpoint_warnings() {
+  return engine_->keeper_ ? engine_->keeper_->take_warnings() : std::vector<std::string>{};
+}
+std::string Simulation::last_checkpoint() const { return engine_->keeper_ ? engine_->keeper_->last_complete() : ""; }
 Timings Simulation::timings() const { return engine_->timings(); }
 double Simulation::skin() const { return engine_->skin(); }
 std::size_t Simulation::memory_bytes() const { return engine_->memory_bytes(); }

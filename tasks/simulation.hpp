@@ -44,13 +44,18 @@ struct Timings {
 ///
 /// The state is the same to the bit for any number of ranks, threads and any exchange. The library works on a duplicate
 /// of the communicator, prints nothing and never ends the program.
-/// Construction, run, measure, digest and destruction are collective; the rest is local. One thread at a time.
+/// Construction, run, measure, digest, destruction and what is said to be are collective; the rest is local. One thread at a time.
 class Simulation {
  public:
   /// @param particles  all of them, the same on every rank
   /// Errors: InputError, the same on every rank, for a model that cannot run (unstable step, too many ranks for the
   /// domain, gross overlaps, unknown exchange or vector width).
   Simulation(const Model& model, const ParticleSet& particles, MPI_Comm communicator, const RunOptions& options = {});
+  /// Goes on from a checkpoint, bit for bit, on any number of ranks and threads and with any exchange.
+  /// @param model       of the run that wrote it; length and outputs may differ
+  /// @param checkpoint  its folder; see find_checkpoint
+  /// Errors, the same on every rank: InputError when it is damaged or of another model
+  static Simulation restore(const Model& model, const std::string& checkpoint, MPI_Comm communicator, const RunOptions& options = {});
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
@@ -86,6 +91,21 @@ class Simulation {
   /// State digest over all ranks (design: same bits everywhere). Collective.
   [[nodiscard]] std::uint64_t digest();
 
+  /// From now on run() saves the state to `folder` as `spec` says, and when a checkpoint is requested; the newest
+  /// spec.keep stay. A checkpoint is copied between two steps and written behind the next ones; see CheckpointKeeper. It
+  /// holds the state at the beginning of a step, so whatever is written after run() returned comes first. Collective.
+  void keep_checkpoints(const std::string& folder, const CheckpointSpec& spec);
+  /// Saves the state as it is, unless it just was; finish_checkpoints() waits for it. Collective. @pre keep_checkpoints()
+  void save_checkpoint();
+  /// Waits for what is being written. @return false, on all ranks, when the last one is not on the disk. Collective.
+  bool finish_checkpoints();
+  /// Saves soon, on all ranks when one asks for it. Callable from a signal handler.
+  static void request_checkpoint() noexcept;
+  /// Checkpoints that could not be written, since the last call. On rank 0; local.
+  [[nodiscard]] std::vector<std::string> take_checkpoint_warnings();
+  /// The folder of the newest complete one of this run. On rank 0, empty elsewhere; local.
+  [[nodiscard]] std::string last_checkpoint() const;
+
   [[nodiscard]] Timings timings() const;
   [[nodiscard]] double skin() const;
   [[nodiscard]] std::size_t memory_bytes() const;  ///< particles, lists, history of this rank
@@ -94,6 +114,7 @@ class Simulation {
   class Engine;
   template <int Dim>
   class EngineOf;
+  explicit Simulation(std::unique_ptr<Engine> engine);
   std::unique_ptr<Engine> engine_;
 };
 

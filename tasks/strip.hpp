@@ -10,6 +10,7 @@
 #include <barchan/comm/communicator.hpp>
 #include <barchan/comm/exchange.hpp>
 #include <barchan/comm/reduction.hpp>
+#include <barchan/core/checkpoint/share.hpp>
 #include <barchan/core/lane.hpp>
 
 namespace barchan {
@@ -31,6 +32,11 @@ class Strip {
 
   /// Cuts the domain for equal counts, keeps this rank's share, and builds all lists. Collective.
   void seed(const ParticleSet& set);
+
+  /// Instead of seed: the state of a checkpoint, between steps. Collective.
+  /// @param shares  one for each lane of this rank: particles whose last rebuild left them between its cuts, and all that
+  /// has an end among them
+  void restore(std::vector<int> cuts, std::span<const CheckpointShare> shares);
 
   /// Migration, canonical order, ghosts, lists, history. Collective; leaves ghosts up to date.
   /// @param parallel  runs a function for every lane, on as many threads as there are
@@ -81,6 +87,7 @@ class Strip {
   void wait_bulk(const char* what);
   void wait_halo(Side side);
   [[nodiscard]] bool has_neighbour(int l, Side side) const;
+  void refresh_ghosts();
   [[nodiscard]] int first_lane() const { return communicator_.rank() * num_lanes(); }
   [[nodiscard]] int total_lanes() const { return communicator_.size() * num_lanes(); }
   [[nodiscard]] std::size_t most_halo_bytes() const;

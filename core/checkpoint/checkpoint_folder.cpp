@@ -1,0 +1,127 @@
+#include <barchan/core/checkpoint/checkpoint_folder.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include <barchan/core/checkpoint/durable.hpp>
+
+namespace fs = std::filesystem;
+
+namespace barchan {
+namespace {
+
+constexpr std::string_view kPrefix = "step_";
+constexpr std::string_view kPart = ".part", kOld = ".old";
+constexpr std::uint64_t kLargestManifest = std::uint64_t{1} << 28;
+
+bool is_unfinished(const fs::path& path) {
+  const std::string name = path.filename().string();
+  return name.starts_with(kPrefix) && (name.ends_with(kPart) || name.ends_with(kOld));
+}
+
+/// The step in the name of a complete checkpoint; -1 for all other names.
+std::int64_t step_of(const fs::path& path) {
+  const std::string name = path.filename().string();
+  if (!name.starts_with(kPrefix)) return -1;
+  std::int64_t step = -1;
+  const char *begin = name.data() + kPrefix.size(), *end = name.data() + name.size();
+  const auto result = std::from_chars(begin, end, step);
+  return result.ec == std::errc{} && result.ptr == end ? step : -1;
+}
+
+template <class Work>
+void or_file_error(const char* verb, const std::string& path, Work&& work) {
+  try {
+    work();
+  } catch (const fs::filesystem_error& e) {
+    throw FileError(verb, path, e.code().value());
+  }
+}
+
+}  // namespace
+
+std::string CheckpointFolder::complete(std::int64_t step) const {
+  return fmt::format("{}/step_{:09}", path_, step);
+}
+
+std::string CheckpointFolder::unfinished(std::int64_t step) const {
+  return complete(step) + std::string(kPart);
+}
+
+void CheckpointFolder::begin(std::int64_t step) const {
+  or_file_error("make", unfinished(step), [&] { fs::create_directories(unfinished(step)); });
+}
+
+void CheckpointFolder::commit(const Manifest& manifest) const {
+  const std::string from = unfinished(manifest.step), to = complete(manifest.step),
+                    old = to + std::string(kOld);
+  const std::string text = manifest_text(manifest);
+  const auto bytes = std::as_bytes(std::span(text));
+  write_durably(from + "/" + kManifestName, std::span(&bytes, 1));
+  sync_folder(from);
+  or_file_error("replace", to, [&] {
+    if (!fs::exists(to)) return;
+    fs::remove_all(old);
+    fs::rename(to, old);
+  });
+  rename_durably(from, to);
+  std::error_code ignored;
+  fs::remove_all(old, ignored);
+}
+
+void CheckpointFolder::discard(std::int64_t step) const noexcept {
+  std::error_code ignored;
+  fs::remove_all(unfinished(step), ignored);
+}
+
+void CheckpointFolder::clean() const {
+  or_file_error("clean", path_, [&] {
+    if (!fs::is_directory(path_)) return;
+    std::vector<fs::path> leftovers;
+    for (const auto& entry : fs::directory_iterator(path_)) {
+      if (is_unfinished(entry.path())) leftovers.push_back(entry.path());
+    }
+    for (const fs::path& path : leftovers) {
+      // A run that ended while it replaced a checkpoint of the same step.
+      const fs::path whole = fs::path(path).replace_extension();
+      if (path.extension() == kOld && !fs::exists(whole))
+        fs::rename(path, whole);
+      else
+        fs::remove_all(path);
+    }
+  });
+}
+
+void CheckpointFolder::prune(std::int64_t step, int keep) const {
+  or_file_error("remove old checkpoints in", path_, [&] {
+    int kept = 0;
+    for (const std::int64_t s : steps()) {
+      if (s > step || ++kept > keep) fs::remove_all(complete(s));
+    }
+  });
+}
+
+std::vector<std::int64_t> CheckpointFolder::steps() const {
+  std::vector<std::int64_t> steps;
+  or_file_error("list", path_, [&] {
+    if (!fs::is_directory(path_)) return;
+    for (const auto& entry : fs::directory_iterator(path_)) {
+      if (const std::int64_t step = step_of(entry.path()); step >= 0 && entry.is_directory())
+        steps.push_back(step);
+    }
+  });
+  std::sort(steps.rbegin(), steps.rend());
+  return steps;
+}
+
+Manifest read_manifest(const std::string& checkpoint) {
+  const std::string path = checkpoint + "/" + kManifestName;
+  const auto bytes = read_bytes(path, kLargestManifest);
+  return parse_manifest(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()),
+                        path);
+}
+
+}  // namespace barchan

@@ -1,0 +1,157 @@
+#include <barchan/core/checkpoint/share.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <barchan/core/bonds.hpp>
+#include <barchan/core/error.hpp>
+#include <barchan/core/exact_sum.hpp>
+#include <barchan/core/layout.hpp>
+#include <barchan/core/simd/scalar.hpp>
+
+namespace barchan {
+namespace {
+
+/// Values per particle, contact or bond.
+struct Widths {
+  std::size_t space, spins, force, springs, bond_state;
+};
+
+template <int Dim>
+constexpr Widths widths() {
+  return {Dim, kSpins<Dim>, Layout<Dim>::kForce, Layout<Dim>::kSprings, Bond<Dim>::kState};
+}
+
+class Check {
+ public:
+  explicit Check(const std::string& file) : file_(file) {}
+
+  void require(bool is_right, const std::string& what) const {
+    if (is_right) return;
+    throw InputError(SourcePlace{file_, 0, 0}, what, "take another checkpoint");
+  }
+  void size(CheckpointColumn column, std::size_t has, std::size_t expected) const {
+    require(has == expected, "the column " + name_of(column) + " has " + std::to_string(has) +
+                                 " values instead of " + std::to_string(expected));
+  }
+  void finite(CheckpointColumn column, const std::vector<double>& values) const {
+    const bool all =
+        std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+    require(all, "the column " + name_of(column) + " has values that are not finite");
+  }
+  template <class T>
+  void below(CheckpointColumn column, const std::vector<T>& values, std::size_t end) const {
+    const bool all = std::all_of(values.begin(), values.end(), [end](T v) {
+      return v >= T{0} && static_cast<std::size_t>(v) < end;
+    });
+    require(all, "the column " + name_of(column) + " names something that the deck does not have");
+  }
+
+ private:
+  const std::string& file_;
+};
+
+void check_particles(const CheckpointShare& s, const Widths& w, const ShareLimits& limits,
+                     const Check& check) {
+  using C = CheckpointColumn;
+  const std::size_t n = s.ids.size();
+  check.require(n < static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()) - 8,
+                "too many particles in one share");
+  check.size(C::References, s.references.size(), n * w.space);
+  check.size(C::Positions, s.positions.size(), n * w.space);
+  check.size(C::Velocities, s.velocities.size(), n * w.space);
+  check.size(C::SurfaceSpeeds, s.surface_speeds.size(), n * w.spins);
+  check.size(C::Radii, s.radii.size(), n);
+  check.size(C::InverseMasses, s.inverse_masses.size(), n);
+  check.size(C::Types, s.types.size(), n);
+  check.size(C::Flags, s.flags.size(), n);
+  if (!s.externals.empty()) check.size(C::Externals, s.externals.size(), n * w.force);
+  check.finite(C::References, s.references);
+  check.finite(C::Radii, s.radii);
+  check.below(C::Types, s.types, limits.num_materials);
+}
+
+void check_links(const CheckpointShare& s, const Widths& w, const ShareLimits& limits,
+                 const Check& check) {
+  using C = CheckpointColumn;
+  const std::size_t contacts = s.contact_ids.size() / 2, walls = s.wall_contact_ids.size(),
+                    bonds = s.bond_laws.size();
+  check.size(C::ContactIds, s.contact_ids.size(), 2 * contacts);
+  check.size(C::ContactSprings, s.contact_springs.size(), contacts * w.springs);
+  check.size(C::WallContactWalls, s.wall_contact_walls.size(), walls);
+  check.size(C::WallContactSprings, s.wall_contact_springs.size(), walls * w.springs);
+  check.below(C::WallContactWalls, s.wall_contact_walls, limits.num_walls);
+  check.size(C::BondIds, s.bond_ids.size(), 2 * bonds);
+  check.size(C::BondLengths, s.bond_lengths.size(), bonds);
+  check.size(C::BondStates, s.bond_states.size(), bonds * w.bond_state);
+  check.below(C::BondLaws, s.bond_laws, limits.num_bond_laws);
+}
+
+}  // namespace
+
+std::string name_of(CheckpointColumn column) {
+  using C = CheckpointColumn;
+  switch (column) {
+    case C::State:
+      return "state";
+    case C::Totals:
+      return "totals";
+    case C::Outruns:
+      return "outruns";
+    case C::Ids:
+      return "ids";
+    case C::References:
+      return "references";
+    case C::Positions:
+      return "positions";
+    case C::Velocities:
+      return "velocities";
+    case C::SurfaceSpeeds:
+      return "surface speeds";
+    case C::Radii:
+      return "radii";
+    case C::InverseMasses:
+      return "inverse masses";
+    case C::Types:
+      return "types";
+    case C::Flags:
+      return "flags";
+    case C::Externals:
+      return "external forces";
+    case C::ContactIds:
+      return "contact ids";
+    case C::ContactSprings:
+      return "contact springs";
+    case C::WallContactIds:
+      return "wall contact ids";
+    case C::WallContactWalls:
+      return "wall contact walls";
+    case C::WallContactSprings:
+      return "wall contact springs";
+    case C::BondIds:
+      return "bond ids";
+    case C::BondLaws:
+      return "bond laws";
+    case C::BondLengths:
+      return "bond lengths";
+    case C::BondStates:
+      return "bond states";
+  }
+  return "number " + std::to_string(static_cast<std::uint32_t>(column));
+}
+
+void CheckpointShare::clear() {
+  for_each_column(*this, [](CheckpointColumn, auto& column) { column.clear(); });
+}
+
+void check_share(const CheckpointShare& share, const ShareLimits& limits, const std::string& file) {
+  const Widths w = limits.dimension == 2 ? widths<2>() : widths<3>();
+  const Check check(file);
+  check_particles(share, w, limits, check);
+  check_links(share, w, limits, check);
+  check.size(CheckpointColumn::Totals, share.totals.size(),
+             1 + limits.num_walls * ExactSum::kDigits);
+}
+
+}  // namespace barchan

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace barchan {
+
+/// The columns of a checkpoint's rank files; the numbers are part of the format.
+enum class CheckpointColumn : std::uint32_t {
+  State = 1,    ///< what all ranks share, encoded; in the file of rank 0 (state.hpp)
+  Totals = 2,   ///< broken bonds, then the digits of every wall's work; a sum over all lanes
+  Outruns = 3,  ///< what the next check may still have to tell
+
+  Ids = 16,  ///< of particles
+  References = 17,
+  Positions = 18,
+  Velocities = 19,
+  SurfaceSpeeds = 20,
+  Radii = 21,
+  InverseMasses = 22,
+  Types = 23,
+  Flags = 24,
+  Externals = 25,
+
+  ContactIds = 32,
+  ContactSprings = 33,
+  WallContactIds = 34,
+  WallContactWalls = 35,
+  WallContactSprings = 36,
+  BondIds = 37,
+  BondLaws = 38,
+  BondLengths = 39,
+  BondStates = 40,
+};
+
+/// The name of a column as messages say it.
+[[nodiscard]] std::string name_of(CheckpointColumn column);
+
+/// What a checkpoint keeps of one lane, column by column. Every contact, bond and particle of a run
+/// is in one share.
+///
+/// `references` are the positions at the last rebuild, from which order and lists follow; all else
+/// is as it stands.
+struct CheckpointShare {
+  std::vector<std::int64_t> ids;
+  std::vector<double> references, positions, velocities;  ///< [m], [m], [m/s]; Dim each
+  std::vector<double> surface_speeds;                     ///< u = r·omega [m/s]; 1 or 3 each
+  std::vector<double> radii, inverse_masses;              ///< [m], [1/kg]
+  std::vector<std::uint8_t> types, flags;
+  std::vector<double> externals;  ///< force records, or none at all
+
+  std::vector<std::int64_t> contact_ids;  ///< two each, of pairs whose spring is not zero
+  std::vector<double> contact_springs;    ///< from the first to the second [m]; 1 or 3 each
+  std::vector<std::int64_t> wall_contact_ids;
+  std::vector<std::int32_t> wall_contact_walls;
+  std::vector<double> wall_contact_springs;
+  std::vector<std::int64_t> bond_ids;  ///< two each, the lower one first; intact bonds
+  std::vector<std::int32_t> bond_laws;
+  std::vector<double> bond_lengths, bond_states;
+
+  std::vector<std::int64_t> totals;
+  std::vector<double> outruns;  ///< one a lane: largest squared travel before its last rebuild [m²]
+
+  void clear();
+};
+
+/// Calls visit(CheckpointColumn, vector&) for every column.
+template <class Share, class Visit>
+void for_each_column(Share& share, Visit&& visit) {
+  using C = CheckpointColumn;
+  visit(C::Totals, share.totals);
+  visit(C::Outruns, share.outruns);
+  visit(C::Ids, share.ids);
+  visit(C::References, share.references);
+  visit(C::Positions, share.positions);
+  visit(C::Velocities, share.velocities);
+  visit(C::SurfaceSpeeds, share.surface_speeds);
+  visit(C::Radii, share.radii);
+  visit(C::InverseMasses, share.inverse_masses);
+  visit(C::Types, share.types);
+  visit(C::Flags, share.flags);
+  visit(C::Externals, share.externals);
+  visit(C::ContactIds, share.contact_ids);
+  visit(C::ContactSprings, share.contact_springs);
+  visit(C::WallContactIds, share.wall_contact_ids);
+  visit(C::WallContactWalls, share.wall_contact_walls);
+  visit(C::WallContactSprings, share.wall_contact_springs);
+  visit(C::BondIds, share.bond_ids);
+  visit(C::BondLaws, share.bond_laws);
+  visit(C::BondLengths, share.bond_lengths);
+  visit(C::BondStates, share.bond_states);
+}
+
+/// What a share may refer to.
+struct ShareLimits {
+  int dimension = 2;
+  std::size_t num_materials = 0, num_walls = 0, num_bond_laws = 0;
+};
+
+/// Holds the columns of a share that came from a file against each other and against the model, so
+/// that nothing that works on it can leave an array. Errors: InputError naming `file`.
+void check_share(const CheckpointShare& share, const ShareLimits& limits, const std::string& file);
+
+}  // namespace barchan

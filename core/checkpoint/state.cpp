@@ -1,0 +1,188 @@
+#include <barchan/core/checkpoint/state.hpp>
+
+#include <xxhash.h>
+
+#include <cmath>
+#include <string_view>
+
+#include <barchan/core/bytes.hpp>
+#include <barchan/core/error.hpp>
+
+namespace barchan {
+namespace {
+
+constexpr std::array<std::string_view, 9> kParts{
+    "dimension and domain", "time.step", "gravity", "material",
+    "contact and pair",     "bond",      "wall",    "stage",
+    "search.skin"};
+
+[[noreturn]] void refuse(const std::string& file, const std::string& what,
+                         const std::string& remedy) {
+  throw InputError(SourcePlace{file, 0, 0}, what, remedy);
+}
+
+CheckpointState take_state(ByteReader& in) {
+  CheckpointState s;
+  s.step = in.take<std::int64_t>();
+  s.stage_begin = in.take<std::int64_t>();
+  s.stage = in.take<std::int32_t>();
+  s.skin = in.take<double>();
+  s.reach = in.take<double>();
+  s.start_particles = in.take<std::int64_t>();
+  s.has_bonds = in.take<std::uint8_t>() != 0;
+  s.num_particles = in.take<std::int64_t>();
+  s.check_step = in.take<std::int64_t>();
+  s.interval = in.take<std::int32_t>();
+  s.has_check = in.take<std::uint8_t>() != 0;
+  s.check = in.take<std::array<double, 3>>();
+  const auto num_forces = in.take<std::uint32_t>();
+  for (std::uint32_t f = 0; f < num_forces; ++f) {
+    const auto of_step = in.take<std::int64_t>();
+    s.plate_forces.push_back({of_step, in.take_counted<std::int64_t>()});
+  }
+  s.walls = in.take_counted<SavedWall>();
+  s.fingerprint = in.take_counted<std::uint64_t>();
+  in.finish();
+  return s;
+}
+
+void put(ByteWriter& out, const Vec3& v) {
+  for (int c = 0; c < 3; ++c) out.put(v[c]);
+}
+
+void put(ByteWriter& out, const Dashpot& d) {
+  out.put(d.constant);
+  out.put(d.rate);
+  out.put(d.critical);
+}
+
+void put_contacts(ByteWriter& out, const ContactTable& table) {
+  out.put(table.no_tension);
+  for (const ContactConstants& c : table.constants) {
+    for (const double value : {c.kn, c.kt, c.mu}) out.put(value);
+    put(out, c.cn);
+    put(out, c.ct);
+  }
+}
+
+void put_bonds(ByteWriter& out, const std::vector<BondLaw>& laws) {
+  for (const BondLaw& b : laws) {
+    for (const double value : {b.young_modulus, b.stiffness_ratio, b.radius_factor, b.damping_ratio,
+                               b.normal_stiffness, b.tensile_strength, b.shear_strength}) {
+      out.put(value);
+    }
+  }
+}
+
+void put_walls(ByteWriter& out, const std::vector<WallSpec>& walls) {
+  for (const WallSpec& w : walls) {
+    out.put(w.kind);
+    out.put(w.material);
+    for (const Vec3& v : {w.point, w.normal, w.velocity}) put(out, v);
+    for (const double value : {w.width, w.depth, w.load, w.mass, w.damping}) out.put(value);
+    out.put(w.is_loaded);
+    out.put(w.from_stage);
+  }
+}
+
+template <class Put>
+std::uint64_t hash_of(Put&& put_part) {
+  std::vector<std::byte> bytes;
+  ByteWriter out(bytes);
+  put_part(out);
+  return XXH3_64bits(bytes.data(), bytes.size());
+}
+
+}  // namespace
+
+std::vector<std::byte> encode(const CheckpointState& s) {
+  std::vector<std::byte> bytes;
+  ByteWriter out(bytes);
+  out.put(s.step);
+  out.put(s.stage_begin);
+  out.put(s.stage);
+  out.put(s.skin);
+  out.put(s.reach);
+  out.put(s.start_particles);
+  out.put(static_cast<std::uint8_t>(s.has_bonds));
+  out.put(s.num_particles);
+  out.put(s.check_step);
+  out.put(s.interval);
+  out.put(static_cast<std::uint8_t>(s.has_check));
+  out.put(s.check);
+  out.put(static_cast<std::uint32_t>(s.plate_forces.size()));
+  for (const SavedPlateForces& f : s.plate_forces) {
+    out.put(f.of_step);
+    out.put_counted(f.digits);
+  }
+  out.put_counted(s.walls);
+  out.put_counted(s.fingerprint);
+  return bytes;
+}
+
+CheckpointState decode_state(std::span<const std::byte> bytes, const std::string& file) {
+  CheckpointState state;
+  try {
+    ByteReader in(bytes);
+    state = take_state(in);
+  } catch (const RunError& e) {
+    refuse(file, std::string("the state makes no sense: ") + e.what(), "take another checkpoint");
+  }
+  const auto positive = [](double v) { return std::isfinite(v) && v > 0.0; };
+  const bool is_sane = state.step >= 0 && state.stage >= 0 && state.stage_begin >= 0 &&
+                       state.stage_begin <= state.step && state.skin >= 0.0 &&
+                       std::isfinite(state.skin) && positive(state.reach) &&
+                       state.start_particles >= 0 && state.interval >= 0 && state.interval < 1024 &&
+                       state.check_step >= 0 && std::abs(state.check_step - state.step) < 1024;
+  if (!is_sane) refuse(file, "the state makes no sense", "take another checkpoint");
+  return state;
+}
+
+std::vector<std::uint64_t> fingerprint(const Model& model) {
+  return {
+      hash_of([&](ByteWriter& out) {
+        out.put(model.dimension);
+        put(out, model.domain.lo);
+        put(out, model.domain.hi);
+        out.put(model.domain.periodic);
+        out.put(model.domain.strip_axis);
+      }),
+      hash_of([&](ByteWriter& out) { out.put(model.time.step); }),
+      hash_of([&](ByteWriter& out) { put(out, model.gravity); }),
+      hash_of([&](ByteWriter& out) {
+        for (const Material& m : model.materials) out.put(m.density);
+      }),
+      hash_of([&](ByteWriter& out) { put_contacts(out, model.contacts); }),
+      hash_of([&](ByteWriter& out) { put_bonds(out, model.bond_laws); }),
+      hash_of([&](ByteWriter& out) { put_walls(out, model.walls); }),
+      hash_of([&](ByteWriter& out) {
+        for (const Stage& s : model.stages) {
+          for (const double value : {s.local_damping, s.max_time, s.kinetic_ratio}) out.put(value);
+        }
+      }),
+      hash_of([&](ByteWriter& out) {
+        out.put(static_cast<std::uint8_t>(model.search.skin.has_value()));
+        out.put(model.search.skin.value_or(0.0));
+      }),
+  };
+}
+
+void check_same_model(const CheckpointState& state, const Model& model, const std::string& file) {
+  const std::vector<std::uint64_t> mine = fingerprint(model);
+  std::string differences;
+  for (std::size_t p = 0; p < kParts.size(); ++p) {
+    const bool is_same = state.fingerprint.size() == mine.size() && state.fingerprint[p] == mine[p];
+    if (!is_same) differences += (differences.empty() ? "" : ", ") + std::string(kParts[p]);
+  }
+  if (!differences.empty()) {
+    refuse(
+        file, "the checkpoint is of another deck, which differs in: " + differences,
+        "restart with the deck and --set options of that run; its length and outputs may change");
+  }
+  if (state.walls.size() != model.walls.size() ||
+      static_cast<std::size_t>(state.stage) >= model.stages.size()) {
+    refuse(file, "the state does not fit the deck", "take another checkpoint");
+  }
+}
+
+}  // namespace barchan

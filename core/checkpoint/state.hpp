@@ -1,0 +1,61 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <barchan/core/model.hpp>
+
+namespace barchan {
+
+/// A wall as a checkpoint keeps it.
+struct SavedWall {
+  double point[3], velocity[3], point_at_rebuild[3];
+  double force[3], torque[3], work;  ///< as last measured
+  double is_active;
+};
+
+/// Forces on loaded plates, summed over all ranks, that a step is still to use.
+struct SavedPlateForces {
+  std::int64_t of_step = -1;
+  std::vector<std::int64_t> digits;
+};
+
+/// What a checkpoint keeps beside particles, contacts and bonds; the same on all ranks.
+struct CheckpointState {
+  std::int64_t step = 0, stage_begin = 0;
+  std::int32_t stage = 0;
+
+  // What the particles of the start determined, and all lists with it.
+  double skin = 0.0, reach = 0.0;  ///< [m]
+  std::int64_t start_particles = 0;
+  bool has_bonds = false;
+  std::int64_t num_particles = 0;  ///< now
+
+  // When lists are rebuilt; a check that is still to be answered.
+  std::int64_t check_step = 0;
+  std::int32_t interval = 0;
+  bool has_check = false;
+  std::array<double, 3> check{};
+
+  std::vector<SavedPlateForces> plate_forces;
+  std::vector<SavedWall> walls;
+  std::vector<std::uint64_t> fingerprint;  ///< of the model, see below
+};
+
+[[nodiscard]] std::vector<std::byte> encode(const CheckpointState& state);
+/// Errors: InputError naming `file`, for bytes that make no state.
+[[nodiscard]] CheckpointState decode_state(std::span<const std::byte> bytes,
+                                           const std::string& file);
+
+/// Hashes of those parts of a model that the state depends on; how long the run is and what it
+/// writes is not among them.
+[[nodiscard]] std::vector<std::uint64_t> fingerprint(const Model& model);
+/// Holds a state against the model that shall go on with it. Errors: InputError: another deck, and
+/// what differs
+void check_same_model(const CheckpointState& state, const Model& model, const std::string& file);
+
+}  // namespace barchan

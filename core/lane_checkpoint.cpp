@@ -1,0 +1,188 @@
+#include <algorithm>
+#include <bit>
+#include <unordered_map>
+
+#include <barchan/core/checkpoint/share.hpp>
+#include <barchan/core/error.hpp>
+#include <barchan/core/lane.hpp>
+
+// Saving a lane and bringing it back. What lies across a cut is saved on its right: the left band's
+// pairs and bonds.
+
+namespace barchan {
+namespace {
+
+/// By bits: a spring of -0 is not nothing, for the next step may add to it.
+bool has_bits(const double* values, int count, std::ptrdiff_t stride) {
+  std::uint64_t bits = 0;
+  for (int c = 0; c < count; ++c) bits |= std::bit_cast<std::uint64_t>(values[c * stride]);
+  return bits != 0;
+}
+
+template <int Dim>
+void save_particles(const ParticleStore<Dim>& store, CheckpointShare& share) {
+  using L = Layout<Dim>;
+  const auto n = static_cast<std::size_t>(store.num_owned);
+  share.ids.assign(store.id.begin(), store.id.begin() + store.num_owned);
+  share.types.assign(store.type.begin(), store.type.begin() + store.num_owned);
+  share.flags.assign(store.flags.begin(), store.flags.begin() + store.num_owned);
+  share.references.assign(store.reference.begin(), store.reference.end());
+  share.externals.assign(store.external.begin(), store.external.end());
+  share.positions.resize(n * Dim);
+  share.velocities.resize(n * Dim);
+  share.surface_speeds.resize(n * kSpins<Dim>);
+  share.radii.resize(n);
+  share.inverse_masses.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto row = static_cast<std::int32_t>(i);
+    std::copy_n(store.x(row), Dim, share.positions.data() + i * Dim);
+    std::copy_n(store.x(row) + L::kVelocity, Dim, share.velocities.data() + i * Dim);
+    std::copy_n(store.u(row), int{kSpins<Dim>}, share.surface_speeds.data() + i * kSpins<Dim>);
+    share.radii[i] = store.radius(row);
+    share.inverse_masses[i] = store.inverse_mass(row);
+  }
+}
+
+template <int Dim>
+void save_contacts(const ParticleStore<Dim>& store, const PairList& list, CheckpointShare& share) {
+  constexpr int kSprings = Layout<Dim>::kSprings;
+  for (std::int64_t k = 0; k < list.size(); ++k) {
+    const double* spring = list.template springs<Dim>(k);
+    if (!has_bits(spring, kSprings, kBatch)) continue;
+    for (const std::int32_t end :
+         {list.i[static_cast<std::size_t>(k)], list.j[static_cast<std::size_t>(k)]}) {
+      share.contact_ids.push_back(store.id[static_cast<std::size_t>(end)]);
+    }
+    for (int c = 0; c < kSprings; ++c) share.contact_springs.push_back(spring[c * kBatch]);
+  }
+}
+
+}  // namespace
+
+template <int Dim>
+void Lane<Dim>::save(CheckpointShare& share) {
+  share.clear();
+  unpack_history();
+  save_particles(store_, share);
+  for (const PairList& list : lists_) save_contacts(store_, list, share);
+  if (bands_[Left].exists) save_contacts(store_, bands_[Left].across, share);
+
+  for (const WallContact<Dim>& c : walls_.list()) {
+    if (!has_bits(c.spring, L::kSprings, 1)) continue;
+    share.wall_contact_ids.push_back(store_.id[static_cast<std::size_t>(c.row)]);
+    share.wall_contact_walls.push_back(c.wall);
+    share.wall_contact_springs.insert(share.wall_contact_springs.end(), c.spring,
+                                      c.spring + L::kSprings);
+  }
+  for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.bonds().size()); ++b) {
+    const bool is_right_hand =
+        std::max(bonds_.end_a(b), bonds_.end_b(b)) < store_.ghost_begin(Right);
+    if (bonds_.is_broken(b) || !is_right_hand) continue;
+    const Bond<Dim>& bond = bonds_.bonds()[static_cast<std::size_t>(b)];
+    share.bond_ids.insert(share.bond_ids.end(), {bond.id_a, bond.id_b});
+    share.bond_laws.push_back(bond.law);
+    share.bond_lengths.push_back(bond.length);
+    share.bond_states.insert(share.bond_states.end(), bond.state.begin(), bond.state.end());
+  }
+  share.outruns.push_back(last_distance2_);
+  share.totals.push_back(bonds_.num_broken());
+  for (std::size_t w = 0; w < world_->walls.size(); ++w) {
+    const auto digits = w < wall_sums_.size() ? wall_sums_[w].work.digits() : ExactSum::Digits{};
+    share.totals.insert(share.totals.end(), digits.begin(), digits.end());
+  }
+}
+
+template <int Dim>
+void Lane<Dim>::restore(int slab_begin, int slab_end, const CheckpointShare& share) {
+  slab_begin_ = slab_begin;
+  slab_end_ = slab_end;
+  const auto n = static_cast<std::int32_t>(share.ids.size());
+  store_.num_owned = n;
+  store_.num_ghosts = {};
+  store_.resize_for_ghosts();
+  goes_.assign(share.ids.size(), 0);
+  std::unordered_map<std::int64_t, std::int32_t> row_of;
+  for (std::int32_t i = 0; i < n; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    double* x = store_.x(i);
+    std::fill_n(x, 8, 0.0);
+    std::copy_n(share.references.data() + at * Dim, Dim, x);
+    x[L::kRadius] = share.radii[at];
+    x[L::kInverseMass] = share.inverse_masses[at];
+    if constexpr (Dim == 3) std::fill_n(store_.u(i), 4, 0.0);
+    store_.id[at] = share.ids[at];
+    store_.key[at] = world_->grid.key(x);
+    store_.type[at] = share.types[at];
+    store_.flags[at] = share.flags[at];
+    if (!row_of.emplace(share.ids[at], i).second) {
+      throw RunError("the checkpoint has particle " + std::to_string(share.ids[at]) +
+                     " twice: take another one");
+    }
+  }
+  for (const double distance2 : share.outruns)
+    last_distance2_ = std::max(last_distance2_, distance2);
+  store_.external.assign(share.externals.begin(), share.externals.end());
+  queue_links(share, row_of);
+}
+
+template <int Dim>
+void Lane<Dim>::queue_links(const CheckpointShare& share,
+                            const std::unordered_map<std::int64_t, std::int32_t>& row_of) {
+  loose_.clear();
+  for (std::size_t k = 0; k < share.contact_ids.size() / 2; ++k) {
+    const std::int64_t ends[2] = {share.contact_ids[2 * k], share.contact_ids[2 * k + 1]};
+    const auto first = row_of.find(ends[0]), second = row_of.find(ends[1]);
+    if (first == row_of.end() && second == row_of.end()) continue;
+    const bool is_second = first == row_of.end();
+    LooseContact c{is_second ? second->second : first->second, ends[is_second ? 0 : 1], {}};
+    for (std::size_t q = 0; q < L::kSprings; ++q) {
+      const double s = share.contact_springs[k * L::kSprings + q];
+      c.spring[q] = Dim == 3 && is_second ? -s : s;
+    }
+    loose_.push_back(c);
+  }
+  old_walls_.clear();
+  for (std::size_t k = 0; k < share.wall_contact_ids.size(); ++k) {
+    const auto row = row_of.find(share.wall_contact_ids[k]);
+    if (row == row_of.end()) continue;
+    WallContact<Dim> c{row->second, share.wall_contact_walls[k], {}};
+    std::copy_n(share.wall_contact_springs.data() + k * L::kSprings, int{L::kSprings}, c.spring);
+    old_walls_.push_back(c);
+  }
+  for (std::size_t k = 0; k < share.bond_laws.size(); ++k) {
+    if (!row_of.contains(share.bond_ids[2 * k]) && !row_of.contains(share.bond_ids[2 * k + 1]))
+      continue;
+    Bond<Dim> bond{share.bond_ids[2 * k],
+                   share.bond_ids[2 * k + 1],
+                   share.bond_laws[k],
+                   share.bond_lengths[k],
+                   {}};
+    std::copy_n(share.bond_states.data() + k * Bond<Dim>::kState, std::size_t{Bond<Dim>::kState},
+                bond.state.data());
+    bonds_.add(bond);
+  }
+}
+
+template <int Dim>
+void Lane<Dim>::put_back(const CheckpointShare& share) {
+  for (std::size_t source = 0; source < share.ids.size(); ++source) {
+    const std::int32_t row = new_row_[source];
+    std::copy_n(share.positions.data() + source * Dim, Dim, store_.x(row));
+    std::copy_n(share.velocities.data() + source * Dim, Dim, store_.v(row));
+    std::copy_n(share.surface_speeds.data() + source * kSpins<Dim>, int{kSpins<Dim>},
+                store_.u(row));
+  }
+}
+
+template void Lane<2>::save(CheckpointShare&);
+template void Lane<3>::save(CheckpointShare&);
+template void Lane<2>::restore(int, int, const CheckpointShare&);
+template void Lane<3>::restore(int, int, const CheckpointShare&);
+template void Lane<2>::queue_links(const CheckpointShare&,
+                                   const std::unordered_map<std::int64_t, std::int32_t>&);
+template void Lane<3>::queue_links(const CheckpointShare&,
+                                   const std::unordered_map<std::int64_t, std::int32_t>&);
+template void Lane<2>::put_back(const CheckpointShare&);
+template void Lane<3>::put_back(const CheckpointShare&);
+
+}  // namespace barchan

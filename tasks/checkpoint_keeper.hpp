@@ -1,0 +1,104 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <barchan/comm/reduction.hpp>
+#include <barchan/core/checkpoint/checkpoint_folder.hpp>
+#include <barchan/core/checkpoint/share.hpp>
+#include <barchan/core/model.hpp>
+
+namespace barchan {
+
+/// The state of one rank, copied between two steps.
+struct CheckpointCopy {
+  std::int64_t step = 0;
+  double time = 0.0;
+  std::int64_t slab_begin = 0, slab_end = 0;
+  std::vector<std::byte> state;         ///< rank 0; see state.hpp
+  std::vector<CheckpointShare> shares;  ///< of the lanes
+};
+
+/// Writes checkpoints behind the steps:
+///
+///     every rank   copy ─► hash, write, fsync ──► agree ─┐
+///     rank 0                    (a thread)     (numbers) └► manifest, fsync, rename, fsync, prune
+///                                                                   (a thread)
+///
+/// The next begin() waits for the end of the one before: at most one is under way. Threads touch no
+/// MPI; poll(), between steps, moves it on. A checkpoint that cannot be written is a warning: those
+/// before it stay, the run goes on. Construction, begin, finish and destruction are collective;
+/// rank 0 has the warnings.
+class CheckpointKeeper {
+ public:
+  /// Removes what unfinished checkpoints an earlier run left. @param step  where the run stands
+  CheckpointKeeper(const Communicator& communicator, std::string folder, const Model& model,
+                   const CheckpointSpec& spec, std::int64_t step);
+  ~CheckpointKeeper();
+  CheckpointKeeper(const CheckpointKeeper&) = delete;
+  CheckpointKeeper& operator=(const CheckpointKeeper&) = delete;
+
+  /// By steps; the same on all ranks.
+  [[nodiscard]] bool is_due(std::int64_t step) const;
+  /// By the clock: what this rank thinks; all ranks must agree first.
+  [[nodiscard]] bool is_overdue() const;
+
+  /// Waits for the checkpoint before. @return the memory to copy the state to
+  CheckpointCopy& begin();
+  /// The copy is made. Returns at once.
+  void start();
+  void poll();
+  /// Waits for what is under way. @return false, on all ranks, when the last checkpoint begun is
+  /// not on the disk
+  bool finish();
+
+  [[nodiscard]] std::int64_t last_begun() const {
+    return last_begun_;
+  }  ///< step, -1 before the first
+  /// Where the newest complete checkpoint of this run is; rank 0; empty before the first.
+  [[nodiscard]] const std::string& last_complete() const { return last_complete_; }
+  [[nodiscard]] std::vector<std::string> take_warnings();
+  [[nodiscard]] double seconds() const { return seconds_; }  ///< that steps were held up
+
+ private:
+  enum class Phase { Idle, Writing, Agreeing, Committing };
+  void run_in_background(void (CheckpointKeeper::*work)());
+  void join();
+  void write_files();
+  void commit();
+  void begin_agreement();
+  void take_agreement();
+  void take_commit();
+  void wait_idle();
+  [[nodiscard]] std::vector<std::int64_t> numbers() const;
+  [[nodiscard]] Manifest agreed_manifest() const;
+
+  const Communicator& communicator_;
+  CheckpointFolder folder_;
+  std::string title_;
+  CheckpointSpec spec_;
+  std::int64_t first_step_;
+  int dimension_;
+  Reduction agreement_;
+  CheckpointCopy copy_;
+  Phase phase_ = Phase::Idle;
+
+  std::thread thread_;
+  std::atomic<bool> is_done_{false};
+  int code_ = 0;  ///< errno of the thread's work, 0 when it went well; read after is_done_
+  RankFileSeal seal_;
+
+  std::int64_t last_begun_ = -1;
+  bool last_is_good_ = false;
+  std::string last_complete_;
+  std::vector<std::string> warnings_;
+  std::chrono::steady_clock::time_point last_time_ = std::chrono::steady_clock::now();
+  double seconds_ = 0.0;
+  int num_exceptions_;
+};
+
+}  // namespace barchan

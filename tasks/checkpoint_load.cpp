@@ -1,0 +1,236 @@
+#include <barchan/tasks/checkpoint_load.hpp>
+
+#include <algorithm>
+#include <unordered_set>
+
+#include <fmt/format.h>
+
+#include <barchan/comm/strips.hpp>
+#include <barchan/core/bonds.hpp>
+#include <barchan/core/error.hpp>
+#include <barchan/core/exact_sum.hpp>
+#include <barchan/core/layout.hpp>
+#include <barchan/core/simd/scalar.hpp>
+#include <barchan/tasks/checkpoint_read.hpp>
+#include <barchan/tasks/results/agree.hpp>
+#include <barchan/tasks/strip_plan.hpp>
+
+namespace barchan {
+namespace {
+
+ShareLimits limits_of(const Model& model) {
+  return {model.dimension, model.materials.size(), model.walls.size(), model.bond_laws.size()};
+}
+
+template <class T>
+void take(const std::vector<T>& from, std::size_t number, std::size_t width, std::vector<T>& to) {
+  const auto begin = from.begin() + static_cast<std::ptrdiff_t>(number * width);
+  to.insert(to.end(), begin, begin + static_cast<std::ptrdiff_t>(width));
+}
+
+template <int Dim>
+void take_particle(const CheckpointShare& from, std::size_t p, CheckpointShare& to) {
+  take(from.ids, p, 1, to.ids);
+  take(from.references, p, Dim, to.references);
+  take(from.positions, p, Dim, to.positions);
+  take(from.velocities, p, Dim, to.velocities);
+  take(from.surface_speeds, p, kSpins<Dim>, to.surface_speeds);
+  take(from.radii, p, 1, to.radii);
+  take(from.inverse_masses, p, 1, to.inverse_masses);
+  take(from.types, p, 1, to.types);
+  take(from.flags, p, 1, to.flags);
+  if (!from.externals.empty()) take(from.externals, p, Layout<Dim>::kForce, to.externals);
+}
+
+using Ids = std::unordered_set<std::int64_t>;
+
+template <int Dim>
+void take_links(const CheckpointShare& from, const Ids& mine, CheckpointShare& to) {
+  constexpr std::size_t kSprings = Layout<Dim>::kSprings;
+  const auto has_end = [&mine](const std::vector<std::int64_t>& ids, std::size_t k) {
+    return mine.contains(ids[2 * k]) || mine.contains(ids[2 * k + 1]);
+  };
+  for (std::size_t k = 0; k < from.contact_ids.size() / 2; ++k) {
+    if (!has_end(from.contact_ids, k)) continue;
+    take(from.contact_ids, k, 2, to.contact_ids);
+    take(from.contact_springs, k, kSprings, to.contact_springs);
+  }
+  for (std::size_t k = 0; k < from.wall_contact_ids.size(); ++k) {
+    if (!mine.contains(from.wall_contact_ids[k])) continue;
+    take(from.wall_contact_ids, k, 1, to.wall_contact_ids);
+    take(from.wall_contact_walls, k, 1, to.wall_contact_walls);
+    take(from.wall_contact_springs, k, kSprings, to.wall_contact_springs);
+  }
+  for (std::size_t k = 0; k < from.bond_laws.size(); ++k) {
+    if (!has_end(from.bond_ids, k)) continue;
+    take(from.bond_ids, k, 2, to.bond_ids);
+    take(from.bond_laws, k, 1, to.bond_laws);
+    take(from.bond_lengths, k, 1, to.bond_lengths);
+    take(from.bond_states, k, Bond<Dim>::kState, to.bond_states);
+  }
+}
+
+/// Loads the shares of one rank. Files name the slabs that their particles are in; links reach one
+/// slab further.
+template <int Dim>
+class Loader {
+ public:
+  Loader(const Communicator& communicator, const OpenCheckpoint& checkpoint, const Model& model,
+         const Grid<Dim>& grid)
+      : communicator_(communicator),
+        checkpoint_(checkpoint),
+        limits_(limits_of(model)),
+        grid_(grid) {}
+
+  /// Particles a slab, and the totals. Collective.
+  void count() {
+    const auto num_slabs = static_cast<std::size_t>(grid_.num_slabs());
+    std::vector<std::int64_t> sums(num_slabs + 1 + limits_.num_walls * ExactSum::kDigits, 0);
+    agree(communicator_, [&] {
+      const auto stride = static_cast<std::size_t>(communicator_.size());
+      for (auto r = static_cast<std::size_t>(communicator_.rank()); r < num_files(); r += stride)
+        count_file(r, sums);
+    });
+    communicator_.allreduce_sum(std::span<std::int64_t>(sums));
+    communicator_.allreduce_max(std::span(&outrun_, 1));
+    slab_counts_.assign(sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(num_slabs));
+    totals_.assign(sums.begin() + static_cast<std::ptrdiff_t>(num_slabs), sums.end());
+  }
+
+  LoadedShares load(int num_lanes) {
+    LoadedShares loaded{
+        cut_equal(slab_counts_, communicator_.size() * num_lanes, kMinSlabs), {}, totals_};
+    loaded.shares.resize(static_cast<std::size_t>(num_lanes));
+    const int first = communicator_.rank() * num_lanes;
+    begin_ = loaded.cuts[static_cast<std::size_t>(first)];
+    end_ = loaded.cuts[static_cast<std::size_t>(first + num_lanes)];
+    const std::span<const int> cuts(loaded.cuts.data() + first,
+                                    static_cast<std::size_t>(num_lanes) + 1);
+    agree(communicator_, [&] {
+      for_each_file(
+          0, [&](const CheckpointShare& share) { take_particles(share, cuts, loaded.shares); });
+      std::vector<Ids> ids;
+      for (const CheckpointShare& share : loaded.shares)
+        ids.emplace_back(share.ids.begin(), share.ids.end());
+      for_each_file(1, [&](const CheckpointShare& share) {
+        for (std::size_t l = 0; l < ids.size(); ++l)
+          take_links<Dim>(share, ids[l], loaded.shares[l]);
+      });
+      for (CheckpointShare& share : loaded.shares) {
+        share.totals = totals_;
+        share.outruns = {outrun_};
+        check_share(share, limits_, checkpoint_.path);
+      }
+    });
+    return loaded;
+  }
+
+ private:
+  [[nodiscard]] std::size_t num_files() const { return checkpoint_.manifest.files.size(); }
+  [[nodiscard]] CheckpointShare read(std::size_t r) const {
+    return RankFile(checkpoint_.path, checkpoint_.manifest, r).view().share(limits_);
+  }
+  [[nodiscard]] std::size_t slab(const CheckpointShare& share, std::size_t p) const {
+    return static_cast<std::size_t>(grid_.coordinate(share.references.data() + p * Dim, 0));
+  }
+
+  void count_file(std::size_t r, std::vector<std::int64_t>& sums) {
+    const CheckpointShare share = read(r);
+    const ManifestFile& listed = checkpoint_.manifest.files[r];
+    for (std::size_t p = 0; p < share.ids.size(); ++p) {
+      const auto s = static_cast<std::int64_t>(slab(share, p));
+      if (s < listed.slab_begin || s >= listed.slab_end)
+        refuse(r, "has particles outside its slabs");
+      ++sums[static_cast<std::size_t>(s)];
+    }
+    for (const double distance2 : share.outruns) outrun_ = std::max(outrun_, distance2);
+    for (std::size_t t = 0; t < share.totals.size(); ++t)
+      sums[static_cast<std::size_t>(grid_.num_slabs()) + t] += share.totals[t];
+    const bool is_whole =
+        static_cast<std::int64_t>(share.ids.size()) == listed.particles &&
+        static_cast<std::int64_t>(share.contact_ids.size() / 2) == listed.contacts &&
+        static_cast<std::int64_t>(share.wall_contact_ids.size()) == listed.wall_contacts &&
+        static_cast<std::int64_t>(share.bond_laws.size()) == listed.bonds;
+    if (!is_whole)
+      refuse(r, "does not hold as many particles, contacts and bonds as the manifest lists");
+  }
+
+  [[noreturn]] void refuse(std::size_t r, const std::string& what) const {
+    throw InputError(SourcePlace{checkpoint_.file(r), 0, 0}, what, "take another checkpoint");
+  }
+
+  template <class Visit>
+  void for_each_file(int reach, Visit&& visit) const {
+    for (std::size_t r = 0; r < num_files(); ++r) {
+      if (concerns(checkpoint_.manifest.files[r], reach)) visit(read(r));
+    }
+  }
+
+  /// Whether a file has particles within `reach` slabs of this rank's, around the end too.
+  [[nodiscard]] bool concerns(const ManifestFile& file, int reach) const {
+    const std::int64_t n = grid_.num_slabs();
+    for (const std::int64_t shift : {std::int64_t{0}, n, -n}) {
+      if (file.slab_begin + shift < end_ + reach && file.slab_end + shift > begin_ - reach)
+        return true;
+    }
+    return false;
+  }
+
+  void take_particles(const CheckpointShare& from, std::span<const int> cuts,
+                      std::vector<CheckpointShare>& shares) const {
+    for (std::size_t p = 0; p < from.ids.size(); ++p) {
+      const auto s = static_cast<int>(slab(from, p));
+      if (s < begin_ || s >= end_) continue;
+      const auto lane = std::upper_bound(cuts.begin(), cuts.end(), s) - cuts.begin() - 1;
+      take_particle<Dim>(from, p, shares[static_cast<std::size_t>(lane)]);
+    }
+  }
+
+  const Communicator& communicator_;
+  const OpenCheckpoint& checkpoint_;
+  ShareLimits limits_;
+  const Grid<Dim>& grid_;
+  std::vector<std::int64_t> slab_counts_, totals_;
+  double outrun_ = 0.0;
+  int begin_ = 0, end_ = 0;
+};
+
+}  // namespace
+
+OpenCheckpoint open_checkpoint(const Communicator& communicator, const std::string& path,
+                               const Model& model) {
+  OpenCheckpoint checkpoint{path, read_shared_manifest(communicator, path), {}};
+  agree(communicator, [&] {
+    const std::string file = checkpoint.file(0);
+    if (checkpoint.manifest.dimension != model.dimension) {
+      throw InputError(
+          SourcePlace{path, 0, 0},
+          fmt::format("the checkpoint is of a run in {} dimensions", checkpoint.manifest.dimension),
+          "restart with the deck of that run");
+    }
+    const RankFile first(path, checkpoint.manifest, 0);
+    checkpoint.state = decode_state(first.view().state(), file);
+    check_same_model(checkpoint.state, model, file);
+    const bool is_whole = checkpoint.state.step == checkpoint.manifest.step &&
+                          checkpoint.state.num_particles == checkpoint.manifest.totals().particles;
+    if (!is_whole)
+      throw InputError(SourcePlace{path, 0, 0}, "the manifest and the state contradict each other",
+                       "take another checkpoint");
+  });
+  return checkpoint;
+}
+
+template <int Dim>
+LoadedShares load_shares(const Communicator& communicator, const OpenCheckpoint& checkpoint,
+                         const Model& model, const Grid<Dim>& grid, int num_lanes) {
+  Loader<Dim> loader(communicator, checkpoint, model, grid);
+  loader.count();
+  return loader.load(num_lanes);
+}
+
+template LoadedShares load_shares<2>(const Communicator&, const OpenCheckpoint&, const Model&,
+                                     const Grid<2>&, int);
+template LoadedShares load_shares<3>(const Communicator&, const OpenCheckpoint&, const Model&,
+                                     const Grid<3>&, int);
+
+}  // namespace barchan
