@@ -193,6 +193,8 @@ class Lane {
   static constexpr std::int64_t kBlockPairs = 32 * kBatch;  ///< a block's rows stay in the first cache
 
   void queue_links(const CheckpointShare& share, const std::unordered_map<std::int64_t, std::int32_t>& row_of);
+  /// Largest squared displacement since the last rebuild that a step was computed with: before its drift.
+  [[nodiscard]] double distance2_of_last_step() const;
   [[nodiscard]] int direction_of(int slab) const;  ///< 0 here, 1 left, 2 right
   [[nodiscard]] bool computes_bond(std::int32_t bond) const;
   [[nodiscard]] std::pair<bool, bool> bond_leaves(std::int32_t bond) const;
@@ -247,7 +249,7 @@ class Lane {
   std::int32_t rows_done_ = 0;
   SearchSeconds search_seconds_;
   int slab_begin_ = 0, slab_end_ = 0;
-  double last_distance2_ = 0.0;  ///< largest squared displacement when the lists before these were given up
+  double last_distance2_ = 0.0;  ///< of the last step with the lists before these
 
   // between begin_rebuild and restore_history
   std::vector<std::int32_t> new_row_;  ///< of every source row; -1: left

@@ -138,6 +138,23 @@ Travel Lane<Dim>::travel() const {
 }
 
 template <int Dim>
+double Lane<Dim>::distance2_of_last_step() const {
+  const PeriodicBox& box = world_->grid.box();
+  double most = 0.0;
+  for (std::int32_t i = 0; i < store_.num_owned; ++i) {
+    const double* from = store_.reference.data() + std::size_t{Dim} * static_cast<std::size_t>(i);
+    double d2 = 0.0;
+    for (int c = 0; c < Dim; ++c) {
+      double d = store_.x(i)[c] - world_->dt * store_.v(i)[c] - from[c];
+      d -= box.length[c] * std::rint(d * box.inverse[c]);
+      d2 += d * d;
+    }
+    most = std::max(most, d2);
+  }
+  return most;
+}
+
+template <int Dim>
 std::uint64_t Lane<Dim>::digest() const {
   std::uint64_t sum = 0;
   for (std::int32_t i = 0; i < store_.num_owned; ++i) {
@@ -155,6 +172,8 @@ template std::vector<WallSums> Lane<2>::measure_walls() const;
 template std::vector<WallSums> Lane<3>::measure_walls() const;
 template Travel Lane<2>::travel() const;
 template Travel Lane<3>::travel() const;
+template double Lane<2>::distance2_of_last_step() const;
+template double Lane<3>::distance2_of_last_step() const;
 template std::uint64_t Lane<2>::digest() const;
 template std::uint64_t Lane<3>::digest() const;
 

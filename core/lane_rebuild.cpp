@@ -94,8 +94,7 @@ void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byt
                               std::vector<std::byte>& to_right) {
   slab_begin_ = slab_begin;
   slab_end_ = slab_end;
-  last_distance2_ = 0.0;
-  last_distance2_ = travel().distance2;
+  last_distance2_ = distance2_of_last_step();
   const std::int32_t n = store_.num_owned;
   goes_.assign(static_cast<std::size_t>(n), 0);
   std::vector<std::int32_t> number(static_cast<std::size_t>(n), 0);

@@ -227,10 +227,10 @@ inline Scenario shear_flow() {
 }
 
 inline Scenario expansion() {
-  Scenario s{"a cloud expands into empty strips", plain_model(2, 6.0, 1.0), {}, 700, {}, true};
+  Scenario s{"a cloud expands into empty strips", plain_model(2, 6.0, 1.0), {}, 900, {}, true};
   add_box_walls(s.model);
-  add_cloud(s.set, 2, {{0.0, 0.0, 0.0}, {1.2, 1.0, 0.0}, 0.1, 0.05, 3.0, 13});
-  for (ParticleData& p : s.set.particles) p.velocity[0] += 12.0 * p.position[0];
+  add_cloud(s.set, 2, {{0.0, 0.0, 0.0}, {1.2, 1.0, 0.0}, 0.1, 0.05, 2.0, 13});
+  for (ParticleData& p : s.set.particles) p.velocity[0] += 8.0 * p.position[0];
   shuffle_ids(s.set, 5);
   return s;
 }
