@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::array both_sides{Side::Left, Side::Right};
 constexpr int num_pieces = 8;
+// Ranks that have been apart meet in the first steps, which do not count.
+constexpr int num_first = 2, least_repetitions = 3, most_repetitions = 1000;
 
 double median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -38,17 +40,10 @@ ExchangeProbe::ExchangeProbe(const Communicator& communicator, Neighbours neighb
       neighbours_(neighbours),
       exchange_(exchange),
       bytes_(bytes),
-      budget_(budget_seconds),
-      both_ways_(0.0) {
+      budget_(budget_seconds) {
   exchange_.reserve(bytes);
   communicator_.barrier();
-  double longest = 0.0;
-  for (int warm_up = 0; warm_up < 4; ++warm_up) {
-    const double whole = step({}, true).whole;
-    longest = warm_up == 0 ? 0.0 : std::max(longest, whole);
-  }
-  both_ways_ = slowest(longest);
-  both_ways_ = slowest(median_step({}, true).whole);
+  for (int warm_up = 0; warm_up < 3; ++warm_up) (void)step({}, true);
 }
 
 double ExchangeProbe::slowest(double mine) const {
@@ -56,8 +51,24 @@ double ExchangeProbe::slowest(double mine) const {
   return mine;
 }
 
-int ExchangeProbe::repetitions(double seconds_each) const {
-  return static_cast<int>(std::clamp(budget_ / std::max(seconds_each, 1e-7), 7.0, 1000.0));
+double ExchangeProbe::both_ways() {
+  if (both_ways_ == 0.0) both_ways_ = slowest(median_step({}, true).whole);
+  return both_ways_;
+}
+
+// All ranks repeat equally often: blocks that grow, and after each a look whether the slowest has
+// time left. A machine that is busy with other work so takes longer for fewer repetitions, not for
+// all of them.
+template <class Once>
+void ExchangeProbe::repeat(Once&& once) {
+  const std::int64_t begin = now_ns();
+  int num_done = 0;
+  for (int block = num_first + least_repetitions; num_done < most_repetitions; block *= 2) {
+    for (int n = 0; n < block; ++n) once(num_done + n >= num_first);
+    num_done += block;
+    // Twice as many take twice as long.
+    if (slowest(since(begin)) * 2.0 > budget_) return;
+  }
 }
 
 void ExchangeProbe::send(Side side) {
@@ -111,30 +122,27 @@ ExchangeProbe::Step ExchangeProbe::step(const WorkPattern& work, bool polls) {
   return times;
 }
 
-// Ranks that have been apart meet in the first steps, which are not counted.
 ExchangeProbe::Step ExchangeProbe::median_step(const WorkPattern& work, bool polls) {
-  constexpr int num_first = 2;
-  const int count = repetitions(std::max(both_ways_, work.seconds));
   std::vector<double> wholes, calls;
   communicator_.barrier();
-  for (int n = 0; n < count + num_first; ++n) {
+  repeat([&](bool counts) {
     const Step one = step(work, polls);
-    if (n < num_first) continue;
+    if (!counts) return;
     wholes.push_back(one.whole);
     calls.push_back(one.in_calls);
-  }
+  });
   return {median(wholes), median(calls)};
 }
 
 double ExchangeProbe::median_work(const WorkPattern& work) {
   std::vector<double> times;
-  for (int n = 0; n < std::min(repetitions(work.seconds), 100); ++n) {
+  repeat([&](bool counts) {
     const std::int64_t begin = now_ns();
     for (int piece = 0; piece < work.num_chunks; ++piece) {
       work_of_this_thread().run(work.seconds / work.num_chunks);
     }
-    times.push_back(since(begin));
-  }
+    if (counts) times.push_back(since(begin));
+  });
   return median(times);
 }
 
@@ -162,19 +170,18 @@ double ExchangeProbe::ping_pong(int parity) {
   const Side side = begins ? Side::Right : Side::Left;
   const bool is_in_pair =
       begins ? communicator_.rank() + 1 < communicator_.size() : communicator_.rank() > 0;
-  const int count = repetitions(2.0 * both_ways_);
   communicator_.barrier();
-  if (!is_in_pair) return 0.0;
   std::vector<double> times;
-  for (int n = 0; n < count + 2; ++n) {
+  repeat([&](bool counts) {
+    if (!is_in_pair) return;
     const double half = bounce(side, begins);
-    if (n >= 2) times.push_back(half);
-  }
-  return begins ? median(times) : 0.0;
+    if (counts) times.push_back(half);
+  });
+  return begins && is_in_pair ? median(times) : 0.0;
 }
 
 double ExchangeProbe::half_round_trip() {
-  if (!exchange_.allows_uneven_sides()) return both_ways_;
+  if (!exchange_.allows_uneven_sides()) return both_ways();
   double longest = ping_pong(0);
   if (communicator_.size() > 2) longest = std::max(longest, ping_pong(1));
   return slowest(longest);
@@ -182,7 +189,7 @@ double ExchangeProbe::half_round_trip() {
 
 ExchangeCost ExchangeProbe::measure() {
   ExchangeCost cost;
-  cost.both_ways = both_ways_;
+  cost.both_ways = both_ways();
   cost.half_round_trip = half_round_trip();
   const WorkPattern same{both_ways_, num_pieces};
   const Step overlapped = median_step(same, true);

@@ -40,7 +40,7 @@ struct WorkPattern {
 class ExchangeProbe {
  public:
   /// @param bytes  of every message; reserved in the exchange
-  /// @param budget_seconds  for each measurement, about; at least a few repetitions are made
+  /// @param budget_seconds  for each measurement, about; at least three repetitions are made
   ExchangeProbe(const Communicator& communicator, Neighbours neighbours, Exchange& exchange,
                 std::size_t bytes, double budget_seconds);
 
@@ -56,9 +56,11 @@ class ExchangeProbe {
   Step step(const WorkPattern& work, bool polls);
   Step median_step(const WorkPattern& work, bool polls);
   double median_work(const WorkPattern& work);
+  double both_ways();
   double bounce(Side side, bool begins);
   double ping_pong(int parity);
-  int repetitions(double seconds_each) const;
+  template <class Once>
+  void repeat(Once&& once);
   [[nodiscard]] double slowest(double mine) const;
   void send(Side side);
   bool poll_all();
@@ -68,7 +70,7 @@ class ExchangeProbe {
   Exchange& exchange_;
   std::size_t bytes_;
   double budget_;
-  double both_ways_;
+  double both_ways_ = 0.0;  ///< 0: not yet measured
 };
 
 /// One line of a probe's table.

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include <barchan/comm/clock.hpp>
 #include <barchan/tasks/stop_request.hpp>
 
 namespace barchan {
@@ -26,6 +27,7 @@ std::int64_t Simulation::EngineOf<Dim>::run(std::int64_t num_steps) {
 
 template <int Dim>
 void Simulation::EngineOf<Dim>::step() {
+  if (trace_) trace_->begin_step(step_);
   if (keeper_) keep_checkpoints();
   update_stage();
   update_lists();
@@ -59,6 +61,7 @@ void Simulation::EngineOf<Dim>::update_lists() {
   schedule_->rebuilt(step_);
   must_rebuild_ = false;
   rebuild_seconds_ += now() - begin;
+  if (trace_) trace_->slice(Trace::Slice::Rebuild, 0, static_cast<std::int64_t>(1e9 * begin), now_ns());
 }
 
 template <int Dim>
@@ -73,8 +76,10 @@ bool Simulation::EngineOf<Dim>::stage_is_over() {
   const std::int64_t steps = step_ - stage_begin_;
   if (static_cast<double>(steps) * world_.dt >= stage.max_time - 0.5 * world_.dt) return true;
   if (stage.kinetic_ratio <= 0.0 || steps == 0 || steps % kStageCheck != 0) return false;
-  const Measures m = measure();
-  return m.kinetic.value() < stage.kinetic_ratio * m.elastic.value();
+  return taped_verdict(communicator_, [&] {
+    const Measures m = measure();
+    return m.kinetic.value() < stage.kinetic_ratio * m.elastic.value();
+  });
 }
 
 template <int Dim>

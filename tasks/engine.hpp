@@ -5,6 +5,7 @@
 
 #include <barchan/tasks/checkpoint_keeper.hpp>
 #include <barchan/tasks/checkpoint_load.hpp>
+#include <barchan/tasks/exchange_setup.hpp>
 #include <barchan/tasks/plates.hpp>
 #include <barchan/tasks/rebuild_schedule.hpp>
 #include <barchan/tasks/simulation.hpp>
@@ -25,6 +26,7 @@ class Simulation::Engine {
   virtual std::uint64_t digest() = 0;
   [[nodiscard]] virtual std::span<const WallState> walls() const = 0;
   [[nodiscard]] virtual Timings timings() const = 0;
+  [[nodiscard]] virtual GraphShape graph_shape() const = 0;
   [[nodiscard]] virtual std::size_t memory_bytes() const = 0;
   [[nodiscard]] virtual std::int64_t num_owned() const = 0;
   [[nodiscard]] virtual std::string vector_width() const = 0;
@@ -33,7 +35,9 @@ class Simulation::Engine {
   virtual void save_checkpoint() = 0;
 
   Engine(const Model& model, MPI_Comm comm, RunOptions options)
-      : model_(model), options_(std::move(options)), communicator_(comm) {}
+      : model_(model), options_(std::move(options)), communicator_(comm) {
+    communicator_.set_tape(options_.tape);
+  }
 
   const Model model_;
   RunOptions options_;
@@ -42,6 +46,8 @@ class Simulation::Engine {
   std::int64_t num_particles_ = 0;
   int stage_ = 0;
   bool stopped_ = false;
+  ExchangeChoice choice_;
+  std::unique_ptr<Trace> trace_;  ///< null: none was asked for
   std::unique_ptr<CheckpointKeeper> keeper_;
 };
 
@@ -68,6 +74,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   std::uint64_t digest() override;
   [[nodiscard]] std::span<const WallState> walls() const override { return world_.walls; }
   [[nodiscard]] Timings timings() const override;
+  [[nodiscard]] GraphShape graph_shape() const override { return graph_->shape(); }
   [[nodiscard]] std::size_t memory_bytes() const override { return strip_->bytes(); }
   [[nodiscard]] std::int64_t num_owned() const override { return strip_->num_owned(); }
   [[nodiscard]] std::string vector_width() const override { return name_of(world_.kernels.width); }
@@ -84,6 +91,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   [[nodiscard]] CheckpointState state();
   void keep_checkpoints();
   [[nodiscard]] bool wants_checkpoint() const;
+  void make_trace();
   void step();
   void update_lists();
   void update_stage();

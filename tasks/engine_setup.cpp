@@ -49,9 +49,19 @@ void Simulation::EngineOf<Dim>::make_world(const WorldScale& scale) {
 
 template <int Dim>
 void Simulation::EngineOf<Dim>::make_loop() {
+  choice_ = settle_exchange(*strip_, options_, communicator_);
+  strip_->restart_waits();
   graph_ = std::make_unique<StepGraph<Dim>>(*strip_, options_.threads, options_.schedule, options_.max_delay_seconds, options_.delay_seed);
   schedule_ = std::make_unique<RebuildSchedule>(communicator_, world_.skin, world_.dt, model_.gravity.norm());
   plates_ = std::make_unique<Plates>(communicator_, world_.wall_specs, world_.dt);
+  if (options_.trace) make_trace();
+}
+
+template <int Dim>
+void Simulation::EngineOf<Dim>::make_trace() {
+  trace_ = std::make_unique<Trace>(communicator_, strip_->neighbours(), options_.threads, options_.trace_events);
+  graph_->set_trace(trace_.get());
+  strip_->set_trace(trace_.get());
 }
 
 template <int Dim>
@@ -65,21 +75,9 @@ void Simulation::EngineOf<Dim>::make_strip() {
                                  std::max(1, fit), kMinSlabs, std::max(1, fit)));
   }
   const int lanes = std::clamp(options_.threads, 1, std::max(1, fit / communicator_.size()));
-  std::unique_ptr<Exchange> exchange;
+  auto exchange = first_exchange(options_, communicator_,
+                                 strip_neighbours(communicator_.rank(), communicator_.size(), world_.grid.is_periodic(0)));
   const bool returns = options_.exchange == "return";
-  const auto names = exchange_choices();
-  if (std::find(names.begin(), names.end(), options_.exchange) == names.end()) {
-    std::string known;
-    for (const auto& name : names) known += (known.empty() ? "" : ", ") + name;
-    throw InputError("unknown exchange '" + options_.exchange + "'", "there are: " + known);
-  }
-  if (communicator_.size() > 1) {
-    ExchangeOptions exchange_options;
-    exchange_options.max_delay_seconds = options_.max_delay_seconds;
-    exchange_options.delay_seed = options_.delay_seed;
-    exchange = make_exchange(returns ? "sendrecv" : options_.exchange, communicator_,
-                             strip_neighbours(communicator_.rank(), communicator_.size(), world_.grid.is_periodic(0)), exchange_options);
-  }
   strip_ = std::make_unique<Strip<Dim>>(world_, communicator_, std::move(exchange), lanes, returns);
 }
 

@@ -101,27 +101,42 @@ std::uint64_t Simulation::EngineOf<Dim>::digest() {
 template <int Dim>
 Timings Simulation::EngineOf<Dim>::timings() const {
   Timings t;
-  const StepTimes& steps = graph_->times();
+  const StepTimes steps = graph_->times();
   t.loop_seconds = loop_seconds_;
-  // Lanes rebuild side by side and step on all workers: a rebuild counts once, a step's search adds up.
+  // Lanes work side by side: a step's search is averaged over them, a rebuild's counts once.
   SearchSeconds search;
+  const double share = 1.0 / strip_->num_lanes();
   for (int l = 0; l < strip_->num_lanes(); ++l) {
     const SearchSeconds& lane = strip_->lane(l).search_seconds();
     search.rebuild = std::max(search.rebuild, lane.rebuild);
-    search.chunks += lane.chunks;
-    search.bands += lane.bands;
+    search.chunks += share * lane.chunks;
+    search.bands += share * lane.bands;
   }
+  const bool is_alone = communicator_.size() == 1;
+  const RebuildWaits waits = is_alone ? RebuildWaits{} : strip_->rebuild_waits();
+  const double reductions = is_alone ? 0.0 : schedule_->wait_seconds() + plates_->wait_seconds();
   t.phases = {{"forces", steps.chunks - search.chunks},
               {"bands", steps.bands - search.bands},
+              {"send", steps.send},
               {"poll", steps.poll},
-              {"wait", steps.exposed},
-              {"rebuild", rebuild_seconds_ - search.rebuild},
+              {"wait", steps.wait},
+              {"rebuild", rebuild_seconds_ - search.rebuild - waits.sum()},
+              {"rebuild_wait", waits.sum()},
+              {"reduction_wait", reductions},
               {"search", search.chunks + search.bands + search.rebuild}};
-  t.in_flight_seconds = steps.in_flight;
-  t.exposed_seconds = steps.exposed;
+  double rest = loop_seconds_;
+  for (const auto& [name, seconds] : t.phases) rest -= seconds;
+  t.phases["other"] = std::max(0.0, rest);
+  if (strip_->exchange() != nullptr) t.exchange = strip_->exchange()->stats();
+  t.communication = {{"halo", {steps.in_flight, steps.exposed()}},
+                     {"rebuild", {waits.in_flight + waits.halo, waits.sum()}},
+                     {"reductions", {reductions, reductions}}};
+  for (const auto& [name, kind] : t.communication) {
+    t.in_flight_seconds += std::max(kind.in_flight, kind.exposed);
+    t.exposed_seconds += kind.exposed;
+  }
   t.rebuilds = strip_->num_rebuilds();
   t.migrations = strip_->num_migrations();
-  if (strip_->exchange() != nullptr) t.exchange = strip_->exchange()->stats();
   return t;
 }
 

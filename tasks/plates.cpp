@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <barchan/comm/clock.hpp>
 #include <barchan/core/error.hpp>
 
 namespace barchan {
@@ -29,7 +30,11 @@ void Plates::drive(std::span<WallState> states, std::int64_t step) {
   if (loaded_.empty()) return;
   const auto slot = static_cast<std::size_t>(step % kLag);
   const bool has_forces = step >= kLag && of_step_[slot] == step - kLag;
-  if (has_forces) reductions_[slot]->wait();
+  if (has_forces) {
+    const std::int64_t begin = now_ns();
+    reductions_[slot]->wait();
+    wait_seconds_ += 1e-9 * static_cast<double>(now_ns() - begin);
+  }
   for (std::size_t p = 0; p < loaded_.size(); ++p) {
     const std::size_t w = loaded_[p];
     if (!states[w].is_active) continue;

@@ -34,6 +34,7 @@ class Plates {
   [[nodiscard]] std::vector<SavedPlateForces> forces();
   /// Puts them back into flight. Collective. Errors: RunError when they are not of as many plates.
   void restore(std::span<const SavedPlateForces> forces, bool is_root);
+  [[nodiscard]] double wait_seconds() const { return wait_seconds_; }  ///< for forces
 
  private:
   void accelerate(WallState& state, const WallSpec& spec, const Vec3& force) const;
@@ -41,6 +42,7 @@ class Plates {
   std::vector<WallSpec> specs_;
   std::vector<std::size_t> loaded_;
   double dt_;
+  double wait_seconds_ = 0.0;
   std::array<std::unique_ptr<Reduction>, kLag> reductions_;
   std::array<std::int64_t, kLag> of_step_{};
 };

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <barchan/comm/clock.hpp>
 #include <barchan/core/error.hpp>
 
 namespace barchan {
@@ -33,9 +34,15 @@ void RebuildSchedule::poll() {
   if (reduction_.is_in_flight()) (void)reduction_.test();
 }
 
+void RebuildSchedule::wait() {
+  const std::int64_t begin = now_ns();
+  reduction_.wait();
+  wait_seconds_ += 1e-9 * static_cast<double>(now_ns() - begin);
+}
+
 bool RebuildSchedule::must_rebuild(std::int64_t step) {
   if (step != check_step_ + kLag) return false;
-  reduction_.wait();
+  wait();
   const auto maxima = reduction_.maxima();
   stop_agreed_ = maxima[3] > 0.0;
   save_agreed_ = maxima[4] > 0.0;
@@ -61,7 +68,7 @@ bool RebuildSchedule::must_rebuild(std::int64_t step) {
 }
 
 void RebuildSchedule::rebuilt(std::int64_t step) {
-  if (reduction_.is_in_flight()) reduction_.wait();  // a rebuild for another reason; the answer is stale
+  if (reduction_.is_in_flight()) wait();  // a rebuild for another reason; the answer is stale
   interval_ = std::max(interval_ / 2, 1);
   check_step_ = step + interval_;
 }

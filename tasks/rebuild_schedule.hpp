@@ -48,6 +48,7 @@ class RebuildSchedule {
   [[nodiscard]] bool stop_agreed() const { return stop_agreed_; }
   /// Whether some rank wished to save; true once.
   [[nodiscard]] bool take_save_agreed() { return std::exchange(save_agreed_, false); }
+  [[nodiscard]] double wait_seconds() const { return wait_seconds_; }  ///< for answers
   void poll();  ///< lets the reduction advance
   void rebuilt(std::int64_t step);
 
@@ -65,6 +66,9 @@ class RebuildSchedule {
   std::int64_t check_step_ = 0;
   int interval_ = 0;
   bool stop_agreed_ = false, save_agreed_ = false;
+  double wait_seconds_ = 0.0;
+
+  void wait();
 };
 
 }  // namespace barchan

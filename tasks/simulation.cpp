@@ -1,6 +1,7 @@
 #include <barchan/tasks/simulation.hpp>
 
 #include <atomic>
+#include <stdexcept>
 
 #include <barchan/core/error.hpp>
 #include <barchan/tasks/engine.hpp>
@@ -24,7 +25,8 @@ void forget_checkpoint_request() noexcept { checkpoint_requested.store(false, st
 void Simulation::request_checkpoint() noexcept { checkpoint_requested.store(true, std::memory_order_relaxed); }
 
 std::vector<std::string> exchange_choices() {
-  auto names = exchange_names();
+  std::vector<std::string> names{"auto"};
+  for (auto& name : exchange_names()) names.push_back(std::move(name));
   names.emplace_back("return");
   return names;
 }
@@ -76,6 +78,12 @@ std::vector<std::string> Simulation::take_checkpoint_warnings() {
 }
 std::string Simulation::last_checkpoint() const { return engine_->keeper_ ? engine_->keeper_->last_complete() : ""; }
 Timings Simulation::timings() const { return engine_->timings(); }
+const ExchangeChoice& Simulation::exchange_choice() const { return engine_->choice_; }
+std::string Simulation::step_graph() const { return graph_dot(engine_->communicator_, engine_->graph_shape()); }
+void Simulation::write_trace(const std::string& path) const {
+  if (!engine_->trace_) throw std::logic_error("Simulation::write_trace: RunOptions::trace is off");
+  engine_->trace_->write(path);
+}
 double Simulation::skin() const { return engine_->skin(); }
 std::size_t Simulation::memory_bytes() const { return engine_->memory_bytes(); }
 

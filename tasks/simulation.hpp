@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <barchan/comm/auto_exchange.hpp>
 #include <barchan/comm/communicator.hpp>
 #include <barchan/comm/exchange.hpp>
 #include <barchan/core/lane.hpp>
@@ -24,12 +25,19 @@ struct OwnedParticle {
   Vec3 position, velocity, omega;
 };
 
-/// Where the time of a run went, this rank; workers' seconds are summed over threads.
+/// One kind of communication of this rank [s].
+struct CommunicationTime {
+  double in_flight = 0.0;  ///< under way
+  double exposed = 0.0;    ///< of that, not spent on particles: waiting, or inside MPI; a worker's, averaged
+};
+
+/// Where the time of a run went, this rank; what workers do side by side is averaged over them.
 struct Timings {
-  double loop_seconds = 0.0;              ///< inside run()
-  std::map<std::string, double> phases;   ///< name → seconds
-  double in_flight_seconds = 0.0;         ///< halo messages under way
-  double exposed_seconds = 0.0;           ///< of that, with nothing else to do
+  double loop_seconds = 0.0;             ///< inside run()
+  std::map<std::string, double> phases;  ///< name → seconds; the rest of the loop is "other"
+  std::map<std::string, CommunicationTime> communication;  ///< "halo", "rebuild", "reductions"
+  double in_flight_seconds = 0.0;        ///< all kinds
+  double exposed_seconds = 0.0;
   std::int64_t rebuilds = 0, migrations = 0;
   ExchangeStats exchange;                 ///< zero on one rank
 };
@@ -107,6 +115,13 @@ class Simulation {
   [[nodiscard]] std::string last_checkpoint() const;
 
   [[nodiscard]] Timings timings() const;
+  /// Which exchange is in use and why; the same on every rank.
+  [[nodiscard]] const ExchangeChoice& exchange_choice() const;
+  /// The step graph of all ranks as DOT, for Graphviz; complete on rank 0. Collective.
+  [[nodiscard]] std::string step_graph() const;
+  /// What happened when, as Chrome trace events of all ranks; opens in Perfetto. Collective.
+  /// @pre RunOptions::trace. Errors: RunError when the file cannot be written.
+  void write_trace(const std::string& path) const;
   [[nodiscard]] double skin() const;
   [[nodiscard]] std::size_t memory_bytes() const;  ///< particles, lists, history of this rank
 
@@ -118,7 +133,8 @@ class Simulation {
   std::unique_ptr<Engine> engine_;
 };
 
-/// Names that RunOptions::exchange takes, the default first: those of comm, and the published scheme `return`.
+/// Names that RunOptions::exchange takes, the default first: `auto`, those of comm, the published scheme `return`. With a
+/// tape that plays, `replay` and no other.
 std::vector<std::string> exchange_choices();
 
 }  // namespace barchan

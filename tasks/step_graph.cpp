@@ -1,28 +1,36 @@
 #include <barchan/tasks/step_graph.hpp>
 
+#include <algorithm>
+#include <chrono>
 #include <thread>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include <barchan/comm/backoff.hpp>
+#include <barchan/comm/clock.hpp>
 #include <barchan/comm/watchdog.hpp>
 
 namespace barchan {
 namespace {
 
-using Clock = std::chrono::steady_clock;
 constexpr std::array<Side, 2> kSides{Side::Left, Side::Right};
-constexpr std::size_t at(Side side) { return static_cast<std::size_t>(side); }
+constexpr std::size_t at(Side side) {
+  return static_cast<std::size_t>(side);
+}
 
-double seconds(Clock::time_point from, Clock::time_point to) { return std::chrono::duration<double>(to - from).count(); }
+constexpr double kSecond = 1e-9;  // in nanoseconds
 
 }  // namespace
 
 template <int Dim>
-StepGraph<Dim>::StepGraph(Strip<Dim>& strip, int threads, Schedule schedule, double max_task_delay, std::uint64_t delay_seed)
-    : strip_(strip), schedule_(schedule), workers_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)),
-      arena_(threads), max_task_delay_(max_task_delay), delay_state_(delay_seed * 2 + 1) {
+StepGraph<Dim>::StepGraph(Strip<Dim>& strip, int threads, Schedule schedule, double max_task_delay,
+                          std::uint64_t delay_seed)
+    : strip_(strip),
+      schedule_(schedule),
+      workers_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)),
+      arena_(threads),
+      max_task_delay_(max_task_delay),
+      delay_state_(delay_seed * 2 + 1) {
   arena_.execute([this] { build(); });
 }
 
@@ -36,12 +44,16 @@ void StepGraph<Dim>::build() {
   graph_ = std::make_unique<tbb::flow::graph>();
   for (int l = 0; l < strip_.num_lanes(); ++l) {
     LaneNodes& n = nodes_.emplace_back();
-    n.chunk = std::make_unique<ChunkNode>(*graph_, tbb::flow::unlimited, [this, l](int chunk) { run_chunk(l, chunk); });
+    n.chunk = std::make_unique<ChunkNode>(*graph_, tbb::flow::unlimited,
+                                          [this, l](int chunk) { run_chunk(l, chunk); });
     // Each waits for two signals: the work before it, and its ghosts.
     n.left = std::make_unique<BandNode>(*graph_, 2, [this, l](Signal) { run_band(l, Side::Left); });
-    n.right = std::make_unique<BandNode>(*graph_, 2, [this, l](Signal) { run_band(l, Side::Right); });
+    n.right =
+        std::make_unique<BandNode>(*graph_, 2, [this, l](Signal) { run_band(l, Side::Right); });
   }
-  drain_ = std::make_unique<tbb::flow::function_node<int, Signal>>(*graph_, tbb::flow::unlimited, [this](int) { drain(); });
+  drain_ = std::make_unique<tbb::flow::function_node<int, Signal>>(
+      *graph_, tbb::flow::unlimited,
+      [this](int) { drain(strip_.num_lanes() == 1 && !arrived_[0]); });
 }
 
 template <int Dim>
@@ -49,6 +61,8 @@ void StepGraph<Dim>::run(const StepFrame& frame) {
   frame_ = frame;
   arena_.execute([this] {
     lanes_left_ = strip_.num_lanes();
+    drain_begin_ = 0;
+    for (LaneNodes& n : nodes_) n.idle_since = 0;
     left_is_done_ = false;
     for (const Side side : kSides) arrived_[at(side)] = !strip_.awaits(side);
     if (schedule_ == Schedule::Sequential) await_all();
@@ -57,54 +71,125 @@ void StepGraph<Dim>::run(const StepFrame& frame) {
         if (has_band(l, side) && (!strip_.is_outer(l, side) || arrived_[at(side)])) signal(l, side);
       }
     }
-    for (int l = 0; l < strip_.num_lanes(); ++l) nodes_[static_cast<std::size_t>(l)].chunk->try_put(0);
+    for (int l = 0; l < strip_.num_lanes(); ++l)
+      nodes_[static_cast<std::size_t>(l)].chunk->try_put(0);
     graph_->wait_for_all();
   });
+  end_step();
+}
+
+template <int Dim>
+void StepGraph<Dim>::end_step() {
   strip_.end_step(true);
-  times_.chunks = times_.bands = 0.0;
+  ++num_steps_;
+  sent_at_ = next_sent_at_;
+  next_sent_at_ = 0;
+  if (trace_ == nullptr) return;
+  const std::int64_t exposed = send_ns_ + poll_ns_ + wait_ns_, now = now_ns();
+  trace_->count(Trace::Counter::ExposedMicroseconds,
+                (exposed - exposed_before_) / strip_.num_lanes(), now);
+  trace_->count(Trace::Counter::FlightMicroseconds, flight_ns_ - flight_before_, now);
+  exposed_before_ = exposed;
+  flight_before_ = flight_ns_;
+}
+
+template <int Dim>
+StepTimes StepGraph<Dim>::times() const {
+  const double share = kSecond / strip_.num_lanes();
+  StepTimes times;
+  std::int64_t chunks = 0, bands = 0;
   for (const LaneNodes& n : nodes_) {
-    times_.chunks += n.chunk_seconds;
-    times_.bands += n.band_seconds;
+    chunks += n.chunk_ns;
+    bands += n.band_ns;
   }
-  times_.poll = poll_seconds_;
+  times.chunks = share * static_cast<double>(chunks);
+  times.bands = share * static_cast<double>(bands - send_ns_);
+  times.send = share * static_cast<double>(send_ns_);
+  times.poll = share * static_cast<double>(poll_ns_);
+  times.wait = share * static_cast<double>(wait_ns_);
+  times.in_flight = kSecond * static_cast<double>(flight_ns_);
+  return times;
+}
+
+template <int Dim>
+GraphShape StepGraph<Dim>::shape() const {
+  GraphShape shape;
+  for (int l = 0; l < strip_.num_lanes(); ++l) {
+    shape.lanes.push_back({strip_.lane(l).num_chunks(), has_band(l, Side::Left),
+                           has_band(l, Side::Right), strip_.is_outer(l, Side::Left),
+                           strip_.is_outer(l, Side::Right)});
+  }
+  shape.neighbours = strip_.neighbours();
+  shape.is_sequential = schedule_ == Schedule::Sequential;
+  return shape;
 }
 
 template <int Dim>
 void StepGraph<Dim>::run_chunk(int l, int chunk) {
-  const auto begin = Clock::now();
+  const std::int64_t begin = now_ns();
   Lane<Dim>& lane = strip_.lane(l);
   LaneNodes& nodes = nodes_[static_cast<std::size_t>(l)];
   maybe_delay();
   if (chunk == 0) lane.begin_step(frame_);
   lane.run_chunk(chunk);
-  nodes.chunk_seconds += seconds(begin, Clock::now());
+  const std::int64_t end = now_ns();
+  nodes.chunk_ns += end - begin;
+  if (trace_ != nullptr) trace_->slice(Trace::Slice::Chunk, l, begin, end);
   try_poll();
   if (chunk + 1 < lane.num_chunks()) {
     nodes.chunk->try_put(chunk + 1);
     return;
   }
-  if (has_band(l, Side::Left)) nodes.left->try_put(Signal());
-  else if (has_band(l, Side::Right)) nodes.right->try_put(Signal());
-  if (lanes_left_.fetch_sub(1) == 1 && !(arrived_[0] && arrived_[1])) drain_->try_put(0);
+  nodes.idle_since = now_ns();
+  if (has_band(l, Side::Left))
+    nodes.left->try_put(Signal());
+  else if (has_band(l, Side::Right))
+    nodes.right->try_put(Signal());
+  const bool band_drains = strip_.num_lanes() == 1 && has_band(l, Side::Left) && arrived_[0];
+  if (lanes_left_.fetch_sub(1) == 1 && !band_drains && !(arrived_[0] && arrived_[1]))
+    drain_->try_put(0);
 }
 
 template <int Dim>
 void StepGraph<Dim>::run_band(int l, Side side) {
-  const auto begin = Clock::now();
+  const std::int64_t begin = now_ns();
   LaneNodes& nodes = nodes_[static_cast<std::size_t>(l)];
   maybe_delay();
   {
     std::unique_lock<std::mutex> lock(comm_mutex_, std::defer_lock);
-    const bool is_outer = strip_.is_outer(l, side);
+    const bool is_outer = strip_.is_outer(l, side) && strip_.neighbours().has(side);
     if (is_outer) lock.lock();
     strip_.finish_band(l, side);
-    strip_.send_band(l, side);
+    send(l, side);
     if (is_outer && side == Side::Left) left_is_done_ = true;
-    if (is_outer) sent_ = Clock::now();
   }
-  nodes.band_seconds += seconds(begin, Clock::now());
+  const std::int64_t end = now_ns();
+  nodes.band_ns += end - begin;
+  busy_ns_ += end - begin;
+  if (trace_ != nullptr)
+    trace_->slice(side == Side::Left ? Trace::Slice::LeftBand : Trace::Slice::RightBand, l, begin,
+                  end);
   if (side == Side::Left && has_band(l, Side::Right)) nodes.right->try_put(Signal());
-  if (side == Side::Left && strip_.is_outer(l, side) && strip_.scheme_returns() && lanes_left_ == 0 && !arrived_[1]) drain_->try_put(0);
+  // A lone worker does this band before it waits for the other side; returned forces are not asked
+  // for before it.
+  const bool is_waited_for =
+      strip_.num_lanes() == 1 || (strip_.is_outer(l, side) && strip_.scheme_returns());
+  if (side == Side::Left && is_waited_for && lanes_left_ == 0 && !(arrived_[0] && arrived_[1]))
+    drain_->try_put(0);
+}
+
+/// @pre comm_mutex_ is held for a band that another rank waits for
+template <int Dim>
+void StepGraph<Dim>::send(int l, Side side) {
+  if (!strip_.is_outer(l, side) || !strip_.neighbours().has(side)) return strip_.send_band(l, side);
+  const std::int64_t in_exchange = strip_.send_ns(), begin = now_ns();
+  strip_.send_band(l, side);
+  const std::int64_t end = now_ns(), spent = strip_.send_ns() - in_exchange;
+  send_ns_ += spent;
+  if (next_sent_at_ == 0) next_sent_at_ = end - spent;
+  if (trace_ == nullptr) return;
+  trace_->slice(Trace::Slice::Send, static_cast<int>(side), begin, end);
+  trace_->sent(side, trace_->step() + 1, end - spent);
 }
 
 template <int Dim>
@@ -115,7 +200,8 @@ void StepGraph<Dim>::signal(int l, Side side) {
 
 template <int Dim>
 bool StepGraph<Dim>::may_poll(Side side) const {
-  return side == Side::Left || !strip_.scheme_returns() || !strip_.neighbours().has(Side::Left) || left_is_done_;
+  return side == Side::Left || !strip_.scheme_returns() || !strip_.neighbours().has(Side::Left) ||
+         left_is_done_;
 }
 
 template <int Dim>
@@ -124,15 +210,27 @@ bool StepGraph<Dim>::poll_sides() {
   for (const Side side : kSides) {
     if (arrived_[at(side)]) continue;
     if (!may_poll(side)) continue;
-    if (!strip_.poll(side)) {
+    if (strip_.poll(side))
+      notice(side);
+    else
       all = false;
-      continue;
-    }
-    arrived_[at(side)] = true;
-    if (arrived_[0] && arrived_[1]) times_.in_flight += seconds(sent_, Clock::now());
-    if (lanes_left_ >= 0) signal(side == Side::Left ? 0 : strip_.num_lanes() - 1, side);
   }
   return all;
+}
+
+/// A lane whose chunks were done before others' has been idle since; the drain counts what comes
+/// after.
+template <int Dim>
+void StepGraph<Dim>::notice(Side side) {
+  const std::int64_t now = now_ns();
+  const int lane = side == Side::Left ? 0 : strip_.num_lanes() - 1;
+  const std::int64_t since = nodes_[static_cast<std::size_t>(lane)].idle_since;
+  const std::int64_t until = drain_begin_ != 0 ? drain_begin_ : now;
+  if (strip_.num_lanes() > 1 && since != 0 && since < until) wait_ns_ += until - since;
+  arrived_[at(side)] = true;
+  if (arrived_[0] && arrived_[1] && sent_at_ != 0) flight_ns_ += now - sent_at_;
+  if (trace_ != nullptr) trace_->noticed(side, trace_->step(), now);
+  if (lanes_left_ >= 0) signal(lane, side);
 }
 
 template <int Dim>
@@ -140,31 +238,53 @@ void StepGraph<Dim>::try_poll() {
   if (arrived_[0] && arrived_[1]) return;
   const std::unique_lock<std::mutex> lock(comm_mutex_, std::try_to_lock);
   if (!lock.owns_lock()) return;
-  const auto begin = Clock::now();
+  const std::array<bool, 2> before{arrived_[0], arrived_[1]};
+  const std::int64_t begin = now_ns();
   (void)poll_sides();
-  poll_seconds_ += seconds(begin, Clock::now());
+  const std::int64_t end = now_ns();
+  poll_ns_ += end - begin;
+  if (trace_ == nullptr) return;
+  for (const Side side : kSides) {  // a slice for each, since polls in vain are many
+    if (arrived_[at(side)] != before[at(side)])
+      trace_->slice(Trace::Slice::Poll, static_cast<int>(side), begin, end);
+  }
+}
+
+/// Idle workers: all, but for the time that some spend in bands meanwhile.
+template <int Dim>
+void StepGraph<Dim>::drain(bool may_leave) {
+  if (arrived_[0] && arrived_[1]) return;
+  const std::int64_t begin = now_ns(), busy = busy_ns_;
+  {
+    const std::unique_lock<std::mutex> lock(comm_mutex_);
+    drain_begin_ = begin;
+  }
+  poll_until_in(may_leave);
+  const std::int64_t end = now_ns(), idle = strip_.num_lanes() * (end - begin) - (busy_ns_ - busy);
+  const std::unique_lock<std::mutex> lock(comm_mutex_);
+  wait_ns_ += std::max(end - begin, idle);
+  if (trace_ != nullptr) trace_->slice(Trace::Slice::Wait, 0, begin, end);
 }
 
 template <int Dim>
-void StepGraph<Dim>::drain() {
-  const auto begin = Clock::now();
+void StepGraph<Dim>::poll_until_in(bool may_leave) {
   wait_until(
-      [this] {
+      [this, may_leave] {
         const std::unique_lock<std::mutex> lock(comm_mutex_, std::try_to_lock);
-        return lock.owns_lock() && poll_sides();
+        return lock.owns_lock() && (poll_sides() || (may_leave && arrived_[0]));
       },
       [this] {
-        return fmt::format("halo of this step, from the {}{}{}", arrived_[0] ? "" : "left", arrived_[0] || arrived_[1] ? "" : " and the ",
+        return fmt::format("halo of this step, from the {}{}{}", arrived_[0] ? "" : "left",
+                           arrived_[0] || arrived_[1] ? "" : " and the ",
                            arrived_[1] ? "" : "right");
       });
-  times_.exposed += seconds(begin, Clock::now());
 }
 
 template <int Dim>
 void StepGraph<Dim>::await_all() {
   if (arrived_[0] && arrived_[1]) return;
-  lanes_left_ = -1;  // poll_sides must not signal: run() does
-  drain();
+  lanes_left_ = -1;  // notice() must not signal: run() does
+  drain(false);
   lanes_left_ = strip_.num_lanes();
 }
 
@@ -175,13 +295,17 @@ void StepGraph<Dim>::maybe_delay() {
   s = (s ^ (s >> 30)) * 0xbf58476d1ce4e5b9U;
   s = (s ^ (s >> 27)) * 0x94d049bb133111ebU;
   if ((s & 7U) != 0) return;  // one task in eight
-  std::this_thread::sleep_for(std::chrono::duration<double>(max_task_delay_ * static_cast<double>(s >> 40) * 0x1p-24));
+  std::this_thread::sleep_for(
+      std::chrono::duration<double>(max_task_delay_ * static_cast<double>(s >> 40) * 0x1p-24));
 }
 
 template <int Dim>
 void StepGraph<Dim>::for_each_lane(const std::function<void(int)>& body) {
   if (strip_.num_lanes() == 1) return body(0);
-  arena_.execute([&] { tbb::parallel_for(0, strip_.num_lanes(), [&](int l) { body(l); }, tbb::simple_partitioner()); });
+  arena_.execute([&] {
+    tbb::parallel_for(
+        0, strip_.num_lanes(), [&](int l) { body(l); }, tbb::simple_partitioner());
+  });
 }
 
 template class StepGraph<2>;

@@ -2,8 +2,9 @@
 
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <cstdint>
+#include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -13,18 +14,25 @@
 #include <tbb/task_arena.h>
 
 #include <barchan/core/lane.hpp>
+#include <barchan/tasks/graph_dot.hpp>
 #include <barchan/tasks/run_options.hpp>
 #include <barchan/tasks/strip.hpp>
+#include <barchan/tasks/trace.hpp>
 
 namespace barchan {
 
-/// Seconds of one rank's steps.
+/// Where the time of one rank's steps went [s]. All but in_flight are a worker's, averaged over the
+/// workers.
 struct StepTimes {
-  double chunks = 0.0;     ///< narrow phase, forces and rows of the interior, over all workers
-  double bands = 0.0;      ///< pairs and rows along the cuts, packing and sending
-  double poll = 0.0;       ///< asking for messages between chunks
-  double exposed = 0.0;    ///< waiting for messages with nothing else to do
+  double chunks = 0.0;     ///< narrow phase, forces and rows of the interior
+  double bands = 0.0;      ///< pairs and rows along the cuts, packing
+  double send = 0.0;       ///< inside the exchange, sending: where that waits, this is waiting
+  double poll = 0.0;       ///< inside the exchange, asking for messages between chunks
+  double wait = 0.0;       ///< idle for want of a halo
   double in_flight = 0.0;  ///< from sending the halo until the neighbours' halo was noticed
+
+  /// What the step would not have taken without communication.
+  [[nodiscard]] double exposed() const { return send + poll + wait; }
 };
 
 /// One time step as a graph, built once:
@@ -36,31 +44,37 @@ struct StepTimes {
 ///
 ///   chunk(l, c)      precedes chunk(l, c+1); the last one precedes left(l)
 ///   left(l)          precedes right(l): a lane is never worked on twice at a time
-///   arrived(side)    precedes left/right of the lane at that end of the strip; the other cuts are in memory
-///   left/right(l)    of step k precede the sends of step k+1's halo, which fly behind the chunks of step k+1
+///   arrived(side)    precedes left/right of the lane at that end of the strip; the other cuts are
+///   in memory left/right(l)    of step k precede the sends of step k+1's halo, which fly behind
+///   the chunks of step k+1
 ///
-/// A chunk that ends polls the exchange under a try-lock. When no chunk is left, one drain node polls until all is in.
-/// With Schedule::Sequential the halo is waited for before the first chunk: nothing is hidden.
+/// A chunk that ends polls the exchange under a try-lock. When no chunk is left, one drain node
+/// polls until all is in; a lone worker leaves it for the left band once that can be done. With
+/// Schedule::Sequential the halo is waited for before the first chunk: nothing is hidden.
 template <int Dim>
 class StepGraph {
  public:
-  StepGraph(Strip<Dim>& strip, int threads, Schedule schedule, double max_task_delay, std::uint64_t delay_seed);
+  StepGraph(Strip<Dim>& strip, int threads, Schedule schedule, double max_task_delay,
+            std::uint64_t delay_seed);
 
   /// One step on all lanes. @return when all lanes are done and the next halo is on its way
   void run(const StepFrame& frame);
   /// Runs a function for every lane on the graph's threads.
   void for_each_lane(const std::function<void(int)>& body);
-  [[nodiscard]] const StepTimes& times() const { return times_; }
+  [[nodiscard]] StepTimes times() const;
+  [[nodiscard]] GraphShape shape() const;
+  /// From now on what happens is recorded. @param trace  lives longer; null: no more
+  void set_trace(Trace* trace) { trace_ = trace; }
 
  private:
   using Signal = tbb::flow::continue_msg;
   using ChunkNode = tbb::flow::function_node<int, Signal>;
   using BandNode = tbb::flow::continue_node<Signal>;
-  using Clock = std::chrono::steady_clock;
   struct LaneNodes {
     std::unique_ptr<ChunkNode> chunk;
     std::unique_ptr<BandNode> left, right;
-    double chunk_seconds = 0.0, band_seconds = 0.0;
+    std::int64_t chunk_ns = 0, band_ns = 0;
+    std::atomic<std::int64_t> idle_since{0};  ///< chunks done, a message missing; 0: not so
   };
 
   void build();
@@ -70,8 +84,12 @@ class StepGraph {
   bool poll_sides();
   [[nodiscard]] bool may_poll(Side side) const;
   void signal(int lane, Side side);
-  void drain();
+  void send(int lane, Side side);
+  void notice(Side side);
+  void drain(bool may_leave);
+  void poll_until_in(bool may_leave);
   void await_all();
+  void end_step();
   void maybe_delay();
   [[nodiscard]] bool has_band(int lane, Side side) const;
 
@@ -80,16 +98,22 @@ class StepGraph {
   tbb::global_control workers_;  ///< as many as asked for, also on a node with fewer cores
   tbb::task_arena arena_;
   std::unique_ptr<tbb::flow::graph> graph_;
-  std::vector<LaneNodes> nodes_;
   std::unique_ptr<tbb::flow::function_node<int, Signal>> drain_;
   StepFrame frame_;
   std::mutex comm_mutex_;  ///< one thread at a time in the exchange
   std::array<std::atomic<bool>, 2> arrived_{};
   std::atomic<int> lanes_left_{0};
   std::atomic<bool> left_is_done_{false};
-  StepTimes times_;
-  Clock::time_point sent_{};
-  double poll_seconds_ = 0.0;
+  std::deque<LaneNodes> nodes_;
+  std::int64_t num_steps_ = 0;
+  // In nanoseconds. Under comm_mutex_: send, poll, flights; wait is written by one task at a time.
+  std::int64_t send_ns_ = 0, poll_ns_ = 0, wait_ns_ = 0, flight_ns_ = 0;
+  std::atomic<std::int64_t> busy_ns_{0};  ///< in bands; a wait counts those idle only
+  std::int64_t drain_begin_ = 0;
+  std::int64_t sent_at_ = 0,
+               next_sent_at_ = 0;  ///< first send of this step's halo, of the next one's
+  std::int64_t exposed_before_ = 0, flight_before_ = 0;
+  Trace* trace_ = nullptr;
   double max_task_delay_;
   std::atomic<std::uint64_t> delay_state_;
 };

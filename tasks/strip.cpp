@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <barchan/comm/clock.hpp>
 #include <barchan/comm/watchdog.hpp>
 #include <barchan/core/error.hpp>
 
@@ -77,9 +78,29 @@ void Strip<Dim>::finish_band(int l, Side side) {
   mine.finish_band(core_side);
   if (!band.returns) return;
   const std::vector<double> results = mine.results();
-  const auto message = exchange_->outgoing(side, results.size() * sizeof(double));
-  std::memcpy(message.data(), results.data(), message.size());
+  send_halo(side, results.size() * sizeof(double),
+            [&](std::span<std::byte> message) { std::memcpy(message.data(), results.data(), message.size()); });
+}
+
+/// Packing is work, the rest is the exchange's.
+template <int Dim>
+template <class Pack>
+void Strip<Dim>::send_halo(Side side, std::size_t bytes, Pack&& pack) {
+  const std::int64_t begin = now_ns();
+  const auto message = exchange_->outgoing(side, bytes);
+  const std::int64_t packing = now_ns();
+  pack(message);
+  const std::int64_t packed = now_ns();
   exchange_->send(side);
+  send_ns_ += (packing - begin) + (now_ns() - packed);
+}
+
+template <int Dim>
+void Strip<Dim>::set_exchange(std::unique_ptr<Exchange> exchange) {
+  exchange_ = std::move(exchange);
+  double most = static_cast<double>(most_halo_bytes());
+  communicator_.allreduce_max(std::span(&most, 1));
+  exchange_->reserve(static_cast<std::size_t>(most));
 }
 
 template <int Dim>
@@ -88,9 +109,8 @@ void Strip<Dim>::send_band(int l, Side side) {
   const auto core_side = in_core<Dim>(side);
   if (is_outer(l, side) && neighbours_.has(side)) {
     if (returns_ && side == Side::Left) return;  // ghosts go right only
-    mine.pack_halo(core_side, exchange_->outgoing(side, mine.halo_bytes(core_side)));
-    exchange_->send(side);
-    return;
+    return send_halo(side, mine.halo_bytes(core_side),
+                     [&](std::span<std::byte> message) { mine.pack_halo(core_side, message); });
   }
   auto& outbox = posts_[static_cast<std::size_t>(l)].halo[static_cast<std::size_t>(1 - parity_)][at(side)];
   outbox.resize(mine.halo_bytes(core_side));

@@ -12,8 +12,18 @@
 #include <barchan/comm/reduction.hpp>
 #include <barchan/core/checkpoint/share.hpp>
 #include <barchan/core/lane.hpp>
+#include <barchan/tasks/trace.hpp>
 
 namespace barchan {
+
+/// Seconds that a rank waited in its rebuilds with nothing else to do, since the lists were first built.
+struct RebuildWaits {
+  double halo = 0.0;       ///< for a halo that the rebuild made useless
+  double migration = 0.0;  ///< for migrants, and for counts when strips are cut anew
+  double ghosts = 0.0;     ///< for ghosts, and for the size of halos to come
+  double in_flight = 0.0;  ///< migrants and ghosts, from the send until they were in
+  [[nodiscard]] double sum() const { return halo + migration + ghosts; }
+};
 
 /// The strip of one rank: its lanes, one per thread, and what passes between lanes and between ranks.
 ///
@@ -65,6 +75,13 @@ class Strip {
 
   [[nodiscard]] const std::vector<int>& cuts() const { return cuts_; }
   Exchange* exchange() { return exchange_.get(); }
+  /// Goes on with another exchange. Between a seed or rebuild and the next step. Collective.
+  void set_exchange(std::unique_ptr<Exchange> exchange);
+  [[nodiscard]] std::size_t most_halo_bytes() const;  ///< of a message to a neighbour
+  [[nodiscard]] std::int64_t send_ns() const { return send_ns_; }  ///< in the exchange, sending halos
+  [[nodiscard]] const RebuildWaits& rebuild_waits() const { return waits_; }
+  void restart_waits() { waits_ = {}; }  ///< setting up is not part of the loop
+  void set_trace(Trace* trace) { trace_ = trace; }
   [[nodiscard]] const Neighbours& neighbours() const { return neighbours_; }
   [[nodiscard]] std::int64_t num_owned() const;
   [[nodiscard]] std::int64_t num_rebuilds() const { return num_rebuilds_; }
@@ -90,7 +107,10 @@ class Strip {
   void refresh_ghosts();
   [[nodiscard]] int first_lane() const { return communicator_.rank() * num_lanes(); }
   [[nodiscard]] int total_lanes() const { return communicator_.size() * num_lanes(); }
-  [[nodiscard]] std::size_t most_halo_bytes() const;
+  template <class Pack>
+  void send_halo(Side side, std::size_t bytes, Pack&& pack);
+  void count_wait(double& seconds, Trace::Slice name, std::int64_t begin);
+  void begin_sizes();
 
   World<Dim>& world_;
   const Communicator& communicator_;
@@ -104,6 +124,10 @@ class Strip {
   std::array<bool, 2> awaited_{};  ///< a message of another rank is due in this step
   bool fresh_ = true;              ///< ghosts are up to date: nothing to unpack in this step
   int parity_ = 0;
+  std::int64_t send_ns_ = 0;
+  RebuildWaits waits_;
+  std::int64_t bulk_begin_ = 0;
+  Trace* trace_ = nullptr;
   std::int64_t num_rebuilds_ = 0, num_migrations_ = 0;
 };
 

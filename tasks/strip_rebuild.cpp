@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <barchan/comm/clock.hpp>
 #include <barchan/comm/strips.hpp>
+#include <barchan/comm/tape.hpp>
 #include <barchan/comm/watchdog.hpp>
 #include <barchan/core/error.hpp>
 #include <barchan/tasks/strip.hpp>
@@ -74,7 +76,9 @@ void Strip<Dim>::seed(const ParticleSet& set) {
 
 template <int Dim>
 void Strip<Dim>::rebuild(const ForEachLane& parallel) {
-  discard_pending();
+  // A halo that is on its way is of no use any more. Where the exchange allows it, it is waited for behind migration.
+  const bool sides_go_together = exchange_ && !exchange_->allows_uneven_sides();
+  if (sides_go_together) discard_pending();
   ++num_rebuilds_;
   if (num_rebuilds_ % kRecutEvery == 0 && total_lanes() > 1) recut();
   migrate(parallel);
@@ -83,12 +87,21 @@ void Strip<Dim>::rebuild(const ForEachLane& parallel) {
 
 template <int Dim>
 void Strip<Dim>::discard_pending() {
+  const std::int64_t begin = now_ns();
   for (const Side side : kSides) {
     if (!awaits(side) || (returns_ && side == Side::Right)) continue;
     wait_halo(side);
     exchange_->release(side);
   }
   awaited_ = {};
+  count_wait(waits_.halo, Trace::Slice::Wait, begin);
+}
+
+template <int Dim>
+void Strip<Dim>::count_wait(double& seconds, Trace::Slice name, std::int64_t begin) {
+  const std::int64_t end = now_ns();
+  seconds += 1e-9 * static_cast<double>(end - begin);
+  if (trace_ != nullptr) trace_->slice(name, 0, begin, end);
 }
 
 template <int Dim>
@@ -98,7 +111,9 @@ void Strip<Dim>::recut() {
     const auto& store = lane(l).store();
     for (std::int32_t i = 0; i < store.num_owned; ++i) ++counts[static_cast<std::size_t>(world_.grid.coordinate(store.x(i), 0))];
   }
-  communicator_.allreduce_sum(std::span<std::int64_t>(counts));
+  const std::int64_t begin = now_ns();
+  taped_sum(communicator_, counts);
+  count_wait(waits_.migration, Trace::Slice::Reduction, begin);
   cuts_ = barchan::recut(cuts_, counts, total_lanes(), kMinSlabs);
 }
 
@@ -113,6 +128,7 @@ void Strip<Dim>::migrate(const ForEachLane& parallel) {
   const auto outgoing = [&](Side side) -> const Bytes& {
     return neighbours_.has(side) ? posts_[side == Side::Left ? 0 : posts_.size() - 1].out[at(side)] : none;
   };
+  bulk_begin_ = now_ns();
   if (exchange_) exchange_->begin_bulk(outgoing(Side::Left), outgoing(Side::Right));
   if (neighbours_.has(Side::Left) || neighbours_.has(Side::Right)) {
     for (int l = 0; l < num_lanes(); ++l) num_migrations_ += lane(l).num_leaving();
@@ -125,7 +141,10 @@ void Strip<Dim>::migrate(const ForEachLane& parallel) {
     }
   });
   if (exchange_) {
+    discard_pending();
+    const std::int64_t begin = now_ns();
     wait_bulk("migration");
+    count_wait(waits_.migration, Trace::Slice::Migration, begin);
     if (neighbours_.has(Side::Left)) lane(0).absorb(exchange_->bulk(Side::Left));
     if (neighbours_.has(Side::Right)) lane(num_lanes() - 1).absorb(exchange_->bulk(Side::Right));
   }
@@ -145,9 +164,15 @@ void Strip<Dim>::exchange_ghosts(const ForEachLane& parallel) {
   const auto outgoing = [&](Side side) -> const Bytes& {
     return neighbours_.has(side) ? posts_[side == Side::Left ? 0 : posts_.size() - 1].out[at(side)] : none;
   };
+  bulk_begin_ = now_ns();
   if (exchange_) exchange_->begin_bulk(outgoing(Side::Left), outgoing(Side::Right));
   parallel([this](int l) { lane(l).list_owned(); });  // the messages travel meanwhile
-  if (exchange_) wait_bulk("ghosts");
+  if (exchange_ && !returns_) begin_sizes();
+  if (exchange_) {
+    const std::int64_t begin = now_ns();
+    wait_bulk("ghosts");
+    count_wait(waits_.ghosts, Trace::Slice::Ghosts, begin);
+  }
   parallel([this, &none](int l) {
     const auto incoming = [&](Side side) -> std::span<const std::byte> {
       if (!has_neighbour(l, side)) return none;
@@ -164,19 +189,31 @@ void Strip<Dim>::exchange_ghosts(const ForEachLane& parallel) {
   // In the published scheme results come back even where ghosts are fresh.
   if (returns_) awaited_[at(Side::Right)] = neighbours_.has(Side::Right);
   if (!exchange_) return;
-  const double most = static_cast<double>(most_halo_bytes());
-  sizes_.begin(std::span(&most, 1), {});
+  if (returns_) begin_sizes();  // sizes of results follow from the lists
+  const std::int64_t begin = now_ns();
   sizes_.wait();
+  count_wait(waits_.ghosts, Trace::Slice::Reduction, begin);
   exchange_->reserve(static_cast<std::size_t>(sizes_.maxima()[0]));
 }
 
 template <int Dim>
+void Strip<Dim>::begin_sizes() {
+  const double most = static_cast<double>(most_halo_bytes());
+  sizes_.begin(std::span(&most, 1), {});
+}
+
+template <int Dim>
 void Strip<Dim>::wait_bulk(const char* what) {
-  wait_until([this] { return exchange_->poll_bulk(); },
+  wait_until(
+      [this] {
+        if (sizes_.is_in_flight()) (void)sizes_.test();
+        return exchange_->poll_bulk();
+      },
              [this, what] {
                return fmt::format("rank {}: {} of rebuild {} from ranks {} and {}", communicator_.rank(), what, num_rebuilds_,
                                   neighbours_.left, neighbours_.right);
              });
+  waits_.in_flight += 1e-9 * static_cast<double>(now_ns() - bulk_begin_);
 }
 
 template <int Dim>

@@ -40,11 +40,37 @@ Json energy_of(const RunSummary& s) {
 }
 
 Json communication_of(const RunSummary& s) {
-  return {{"in_flight_seconds", s.in_flight_seconds},
-          {"exposed_seconds", s.exposed_seconds},
-          {"hidden_fraction", s.hidden_fraction()},
-          {"messages", s.messages},
-          {"bytes", s.bytes}};
+  Json json{{"in_flight_seconds", s.in_flight_seconds},
+            {"exposed_seconds", s.exposed_seconds},
+            {"exposed_seconds_most", s.exposed_most},
+            {"hidden_fraction", s.hidden_fraction()},
+            {"messages", s.messages},
+            {"bytes", s.bytes}};
+  for (const auto& [name, time] : s.communication) {
+    json[name] = {{"in_flight_seconds", time.in_flight}, {"exposed_seconds", time.exposed}};
+  }
+  return json;
+}
+
+/// Which exchange was taken and why; what was measured where that was by `auto`.
+Json choice_of(const ExchangeChoice& choice) {
+  Json json{{"name", choice.name}, {"reason", choice.reason}};
+  if (!choice.hint.empty()) json["hint"] = choice.hint;
+  if (!choice.is_measured) return json;
+  json["message_bytes"] = choice.bytes;
+  json["work_seconds"] = choice.work.seconds;
+  json["seconds"] = choice.seconds;
+  json["measured"] = Json::array();
+  for (const ExchangeCandidate& c : choice.candidates) {
+    if (c.obstacle.empty()) {
+      json["measured"].push_back({{"exchange", c.name},
+                                  {"exposed_seconds", c.exposed},
+                                  {"half_round_trip_seconds", c.half_round_trip}});
+    } else {
+      json["measured"].push_back({{"exchange", c.name}, {"obstacle", c.obstacle}});
+    }
+  }
+  return json;
 }
 
 Json momentum_of(const RunSummary& s) {
@@ -89,6 +115,8 @@ Json contract_of(const RunSummary& s) {
 
 void add_further(const RunSummary& s, Json& json) {
   json["interrupted"] = s.interrupted;
+  json["exchange_choice"] = choice_of(s.choice);
+  json["phases_most"] = s.phases_most;
   json["title"] = s.title;
   json["dimension"] = s.dimension;
   json["vector"] = s.vector;

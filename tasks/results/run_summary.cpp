@@ -32,6 +32,8 @@ std::string processor_name() {
 /// What the other ranks must hear of one.
 std::string own_numbers(const Simulation& simulation) {
   const Timings t = simulation.timings();
+  nlohmann::json kinds;
+  for (const auto& [name, time] : t.communication) kinds[name] = {time.in_flight, time.exposed};
   const nlohmann::json numbers{{"host", host_name()},
                                {"owned", simulation.num_owned()},
                                {"memory", simulation.memory_bytes()},
@@ -39,6 +41,7 @@ std::string own_numbers(const Simulation& simulation) {
                                {"phases", t.phases},
                                {"in_flight", t.in_flight_seconds},
                                {"exposed", t.exposed_seconds},
+                               {"kinds", kinds},
                                {"rebuilds", t.rebuilds},
                                {"migrations", t.migrations},
                                {"transport", t.exchange.transport},
@@ -56,8 +59,15 @@ void add_numbers(const std::vector<std::string>& of_ranks, RunSummary& summary) 
     summary.owned.push_back(n.at("owned"));
     summary.memory_bytes += n.at("memory").get<double>();
     summary.loop_seconds = std::max(summary.loop_seconds, n.at("loop").get<double>());
-    for (const auto& [name, seconds] : n.at("phases").items())
+    for (const auto& [name, seconds] : n.at("phases").items()) {
       summary.phases[name] += share * seconds.get<double>();
+      summary.phases_most[name] = std::max(summary.phases_most[name], seconds.get<double>());
+    }
+    for (const auto& [name, time] : n.at("kinds").items()) {
+      summary.communication[name].in_flight += share * time.at(0).get<double>();
+      summary.communication[name].exposed += share * time.at(1).get<double>();
+    }
+    summary.exposed_most = std::max(summary.exposed_most, n.at("exposed").get<double>());
     summary.in_flight_seconds += share * n.at("in_flight").get<double>();
     summary.exposed_seconds += share * n.at("exposed").get<double>();
     summary.rebuilds = std::max(summary.rebuilds, n.at("rebuilds").get<std::int64_t>());
@@ -98,7 +108,8 @@ RunSummary summarize(Simulation& simulation, const std::string& deck,
   summary.dimension = model.dimension;
   summary.ranks = simulation.communicator().size();
   summary.threads = options.threads;
-  summary.exchange = options.exchange;
+  summary.choice = simulation.exchange_choice();
+  summary.exchange = summary.ranks > 1 ? summary.choice.name : options.exchange;
   summary.schedule = options.schedule == Schedule::Overlap ? "overlap" : "sequential";
   const bool is_all_pairs =
       options.search.value_or(model.search.kind) == ContactSearchKind::AllPairs;

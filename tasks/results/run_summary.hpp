@@ -33,11 +33,15 @@ struct RunSummary {
   std::optional<StepLimit> limit;
   double loop_seconds = 0.0;  ///< of the slowest rank
   std::int64_t rebuilds = 0, migrations = 0;
-  double memory_bytes = 0.0;                              ///< all ranks
-  std::map<std::string, double> phases;                   ///< seconds per rank, averaged
-  double in_flight_seconds = 0.0, exposed_seconds = 0.0;  ///< per rank, averaged
-  std::uint64_t messages = 0, bytes = 0;                  ///< sent by all ranks
-  std::vector<std::int64_t> owned;                        ///< particles of each rank
+  double memory_bytes = 0.0;                               ///< all ranks
+  std::map<std::string, double> phases;                    ///< seconds per rank, averaged
+  std::map<std::string, double> phases_most;               ///< of the rank with the most
+  double in_flight_seconds = 0.0, exposed_seconds = 0.0;   ///< per rank, averaged
+  double exposed_most = 0.0;                               ///< of the rank with the most
+  std::map<std::string, CommunicationTime> communication;  ///< by kind; per rank, averaged
+  ExchangeChoice choice;
+  std::uint64_t messages = 0, bytes = 0;  ///< sent by all ranks
+  std::vector<std::int64_t> owned;        ///< particles of each rank
   Measures measures;
   std::vector<WallSpec> wall_specs;
   std::vector<WallState> walls;

@@ -1,0 +1,100 @@
+#include <barchan/tasks/exchange_setup.hpp>
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <barchan/comm/recorded_exchange.hpp>
+#include <barchan/core/error.hpp>
+#include <barchan/tasks/simulation.hpp>
+
+namespace barchan {
+namespace {
+
+constexpr const char* kAuto = "auto";
+constexpr const char* kReplay = "replay";
+constexpr const char* kReturn = "return";
+constexpr const char* kBeforeAuto = "isend";
+// Of a fast core: work that is longer than this estimate hides more, not less.
+constexpr double kSecondsPerParticle = 5e-9, kSecondsPerPair = 3e-9;
+constexpr double kLongestWork = 2e-3;  // [s]; longer work hides nothing more, and takes time
+
+bool is_recording(const RunOptions& options) {
+  return options.tape != nullptr && !options.tape->is_playing();
+}
+
+ExchangeOptions options_of(const RunOptions& options) {
+  ExchangeOptions exchange;
+  exchange.max_delay_seconds = options.max_delay_seconds;
+  exchange.delay_seed = options.delay_seed;
+  return exchange;
+}
+
+std::unique_ptr<Exchange> recorded(std::unique_ptr<Exchange> exchange, const RunOptions& options) {
+  if (!is_recording(options)) return exchange;
+  return std::make_unique<RecordingExchange>(std::move(exchange), options.tape);
+}
+
+void check_name(const std::string& name) {
+  const auto names = exchange_choices();
+  if (name == kReplay || std::ranges::find(names, name) != names.end()) return;
+  std::string known;
+  for (const auto& each : names) known += (known.empty() ? "" : ", ") + each;
+  throw InputError("unknown exchange '" + name + "'", "there are: " + known);
+}
+
+template <int Dim>
+WorkPattern work_of(const Strip<Dim>& strip) {
+  double seconds = 0.0;
+  int chunks = 1;
+  for (int l = 0; l < strip.num_lanes(); ++l) {
+    const auto& lane = strip.lane(l);
+    seconds += kSecondsPerParticle * static_cast<double>(lane.store().num_owned) +
+               kSecondsPerPair * static_cast<double>(lane.num_pairs());
+    chunks = std::max(chunks, lane.num_chunks());
+  }
+  return {std::min(seconds / strip.num_lanes(), kLongestWork), chunks};
+}
+
+}  // namespace
+
+std::unique_ptr<Exchange> first_exchange(const RunOptions& options,
+                                         const Communicator& communicator, Neighbours neighbours) {
+  check_name(options.exchange);
+  const bool has_played_tape = options.tape != nullptr && options.tape->is_playing();
+  if (has_played_tape != (options.exchange == kReplay)) {
+    throw InputError("exchange 'replay' plays a recorded run, and nothing else does",
+                     "record a run with RunOptions::tape, rewind the tape, then run again with "
+                     "exchange 'replay'");
+  }
+  if (communicator.size() == 1) return nullptr;
+  if (options.exchange == kReplay) {
+    return std::make_unique<ReplayExchange>(options.tape, neighbours);
+  }
+  std::string name = options.exchange;
+  if (name == kReturn) name = "sendrecv";
+  if (name == kAuto) name = kBeforeAuto;
+  return recorded(make_exchange(name, communicator, neighbours, options_of(options)), options);
+}
+
+template <int Dim>
+ExchangeChoice settle_exchange(Strip<Dim>& strip, const RunOptions& options,
+                               const Communicator& communicator) {
+  ExchangeChoice choice;
+  choice.name = options.exchange;
+  choice.reason = "asked for by name";
+  if (communicator.size() == 1) {
+    choice.name = "none";
+    choice.reason = "one rank has nobody to exchange with";
+  }
+  if (communicator.size() == 1 || options.exchange != kAuto) return choice;
+  SelectedExchange selected = select_exchange(communicator, strip.neighbours(), options_of(options),
+                                              strip.most_halo_bytes(), work_of(strip));
+  strip.set_exchange(recorded(std::move(selected.exchange), options));
+  return selected.choice;
+}
+
+template ExchangeChoice settle_exchange<2>(Strip<2>&, const RunOptions&, const Communicator&);
+template ExchangeChoice settle_exchange<3>(Strip<3>&, const RunOptions&, const Communicator&);
+
+}  // namespace barchan

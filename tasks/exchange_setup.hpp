@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <barchan/comm/auto_exchange.hpp>
+#include <barchan/tasks/run_options.hpp>
+#include <barchan/tasks/strip.hpp>
+
+namespace barchan {
+
+/// The exchange that a run begins with: the one asked for; for `auto` a two-sided one, which works
+/// everywhere, until the sizes of messages are known; for `replay` the tape. Null on one rank.
+/// Collective. Errors, the same on every rank: InputError for an unknown name (with the list), one
+/// that does not work here (with the remedy), or `replay` without a recorded tape.
+[[nodiscard]] std::unique_ptr<Exchange> first_exchange(const RunOptions& options,
+                                                       const Communicator& communicator,
+                                                       Neighbours neighbours);
+
+/// For `auto`: measures and changes to the best. @return what the run uses and why. Collective.
+/// @pre the strip's lists are built, nothing is in flight
+template <int Dim>
+[[nodiscard]] ExchangeChoice settle_exchange(Strip<Dim>& strip, const RunOptions& options,
+                                             const Communicator& communicator);
+
+}  // namespace barchan

@@ -1,0 +1,57 @@
+#include <barchan/tasks/graph_dot.hpp>
+
+#include <gtest/gtest.h>
+
+namespace barchan {
+namespace {
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+GraphShape two_lanes() {
+  GraphShape shape;
+  shape.lanes = {{3, true, true, true, false}, {1, true, true, false, true}};
+  shape.neighbours = {0, 2};
+  return shape;
+}
+
+TEST(GraphDot, LeadsEveryLaneFromItsChunksOverItsBandsToTheEnd) {
+  const std::string dot = cluster_of(two_lanes(), 1);
+
+  EXPECT_TRUE(has(dot, "r1_begin -> r1_chunks0;"));
+  EXPECT_TRUE(has(dot, "r1_chunks1 -> r1_left1;"));
+  EXPECT_TRUE(has(dot, "r1_left1 -> r1_right1;"));
+  EXPECT_TRUE(has(dot, "r1_right1 -> r1_end;"));
+  EXPECT_TRUE(has(dot, "3 chunks"));
+  EXPECT_TRUE(has(dot, "1 chunk\\n"));
+}
+
+TEST(GraphDot, LetsMessagesReachTheLanesAtTheEndsOfTheStripOnly) {
+  const std::string dot = cluster_of(two_lanes(), 1);
+
+  EXPECT_TRUE(has(dot, "r1_arrived_left -> r1_left0;"));
+  EXPECT_TRUE(has(dot, "r1_arrived_right -> r1_right1;"));
+  EXPECT_FALSE(has(dot, "r1_arrived_left -> r1_left1;"));
+  EXPECT_TRUE(has(dot, "halo from rank 2 is in"));
+}
+
+TEST(GraphDot, HasNoArrivalWhereThereIsNoNeighbour) {
+  GraphShape shape = two_lanes();
+  shape.neighbours = {};
+
+  EXPECT_FALSE(has(cluster_of(shape, 0), "arrived"));
+}
+
+TEST(GraphDot, WaitsForMessagesBeforeTheFirstChunkWhenSequential) {
+  GraphShape shape = two_lanes();
+  shape.is_sequential = true;
+
+  const std::string dot = cluster_of(shape, 0);
+
+  EXPECT_TRUE(has(dot, "r0_arrived_left -> r0_begin"));
+  EXPECT_FALSE(has(dot, "poll\"]"));
+}
+
+}  // namespace
+}  // namespace barchan
