@@ -38,7 +38,8 @@ int on_root(const Communicator* world, const CommandLine& line) {
 
 int run_barchan(int argc, char** argv) {
   const CommandLine line = parse_command_line(argc, argv);
-  const bool is_local = line.kind != CommandKind::Run && line.kind != CommandKind::Check;
+  const bool is_local = line.kind != CommandKind::Run && line.kind != CommandKind::Check &&
+                        line.kind != CommandKind::Probe;
   if (is_local && !has_launcher()) {
     if (line.kind != CommandKind::Text) return on_root(nullptr, line);
     say(line, true);
@@ -53,6 +54,8 @@ int run_barchan(int argc, char** argv) {
     }
     if (line.kind == CommandKind::Run)
       return with_verdict(&world, [&] { run_deck(world, line.run); });
+    if (line.kind == CommandKind::Probe)
+      return with_verdict(&world, [&] { probe(world, line.probe); });
     return on_root(&world, line);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "barchan: %s\n", e.what());

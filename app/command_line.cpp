@@ -41,6 +41,12 @@ CLI::Validator one_of(const std::vector<std::string>& words) {
       "{" + listed(words) + "}");
 }
 
+/// `replay` records a run first, so that it is no exchange of its own.
+std::vector<std::string> with_replay(std::vector<std::string> names) {
+  names.emplace_back("replay");
+  return names;
+}
+
 void add_settings(CLI::App& command, std::vector<std::string>& settings) {
   command
       .add_option("--set", settings,
@@ -69,6 +75,10 @@ void add_run(CLI::App& root, RunArguments& run, std::string& schedule, std::stri
   command
       .add_option("--exchange", run.options.exchange,
                   "How ranks exchange halos; default: " + exchange_choices().front())
+      ->check(one_of(with_replay(exchange_choices())));
+  command
+      .add_option("--record", run.record,
+                  "With --exchange replay: the exchange of the recorded run; default: auto")
       ->check(one_of(exchange_choices()));
   command
       .add_option("--schedule", schedule,
@@ -81,8 +91,30 @@ void add_run(CLI::App& root, RunArguments& run, std::string& schedule, std::stri
       .add_option("--vector", run.options.vector,
                   "Width of vectors; default: auto, the widest here")
       ->check(one_of({"auto", "scalar", "avx2", "avx512"}));
+  command.add_flag("--trace", run.options.trace,
+                   "Write trace.json: tasks, messages and waits of all ranks, for Perfetto");
+  command.add_option("--graph", run.graph, "Write the graph of a step as DOT, for Graphviz")
+      ->type_name("FILE");
   command.add_flag("--force", run.force, "Replace the results in a folder that exists");
   command.add_flag("--quiet", run.quiet, "Print nothing but errors");
+}
+
+void add_probe(CLI::App& root, ProbeArguments& probe) {
+  CLI::App& command = *root.add_subcommand(
+      "probe", "Under mpirun: measure every exchange between neighbouring ranks");
+  command.add_option("--exchange", probe.options.exchanges, "Only these exchanges; default: all")
+      ->check(one_of(exchange_names()))
+      ->delimiter(',');
+  command.add_option("--bytes", probe.options.sizes, "Sizes of messages; default: 64 B to 1 MiB")
+      ->type_name("N")
+      ->delimiter(',')
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 26));
+  command
+      .add_option("--seconds", probe.options.budget_seconds,
+                  "For each measurement, five of which make a line; default: 0.05")
+      ->type_name("T")
+      ->check(CLI::Range(1e-4, 60.0));
+  command.add_flag("--json", probe.json, "Print JSON instead of tables");
 }
 
 void add_others(CLI::App& root, CommandLine& line) {
@@ -152,6 +184,7 @@ CommandKind kind_of(const CLI::App& root) {
   if (root.got_subcommand("run")) return CommandKind::Run;
   if (root.got_subcommand("check")) return CommandKind::Check;
   if (root.got_subcommand("info")) return CommandKind::Info;
+  if (root.got_subcommand("probe")) return CommandKind::Probe;
   return CommandKind::Convert;
 }
 
@@ -166,6 +199,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   root.set_version_flag("--version", "barchan " + version());
   std::string schedule, search;
   add_run(root, line.run, schedule, search);
+  add_probe(root, line.probe);
   add_others(root, line);
   for (CLI::App* command : root.get_subcommands({}))
     command->set_version_flag("--version", "barchan " + version());

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <barchan/comm/probe.hpp>
 #include <barchan/tasks/run_options.hpp>
 
 namespace barchan::app {
@@ -12,7 +13,7 @@ inline constexpr int kDone = 0;
 inline constexpr int kFailed = 1;
 inline constexpr int kWrongInput = 2;
 
-enum class CommandKind { Text, Run, Check, Info, Convert };
+enum class CommandKind { Text, Run, Check, Info, Probe, Convert };
 
 struct RunArguments {
   std::string deck;
@@ -20,6 +21,8 @@ struct RunArguments {
   std::optional<std::int64_t> steps;
   std::vector<std::string> settings;  ///< key=value
   RunOptions options;
+  std::string graph;            ///< file for the step graph; empty: none
+  std::string record = "auto";  ///< exchange of the run that `--exchange replay` records
   bool force = false;
   bool quiet = false;
 };
@@ -28,6 +31,11 @@ struct CheckArguments {
   std::string deck;
   std::vector<std::string> settings;
   int ranks = 0;  ///< 0: a few usual ones
+};
+
+struct ProbeArguments {
+  ProbeOptions options;
+  bool json = false;
 };
 
 struct ConvertArguments {
@@ -44,6 +52,7 @@ struct CommandLine {
   RunArguments run;
   CheckArguments check;
   std::string info_path;
+  ProbeArguments probe;
   ConvertArguments convert;
 };
 

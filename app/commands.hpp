@@ -13,6 +13,9 @@ void run_deck(const Communicator& world, const RunArguments& arguments);
 /// `barchan check`, on one rank of however many. Errors: InputError.
 void check_deck(const CheckArguments& arguments);
 
+/// `barchan probe`: what every exchange costs between these ranks. Collective. Errors: InputError.
+void probe(const Communicator& world, const ProbeArguments& arguments);
+
 void show_info(const std::string& path);
 void convert(const ConvertArguments& arguments);
 

@@ -5,9 +5,11 @@
 #include <barchan/app/commands.hpp>
 #include <barchan/app/loaded_deck.hpp>
 #include <barchan/app/progress.hpp>
+#include <barchan/app/replay.hpp>
 #include <barchan/app/summary_table.hpp>
 #include <barchan/app/verdict.hpp>
 #include <barchan/core/error.hpp>
+#include <barchan/core/io/text_file.hpp>
 #include <barchan/tasks/results/agree.hpp>
 #include <barchan/tasks/results/run_results.hpp>
 
@@ -63,13 +65,26 @@ void advance(Simulation& simulation, RunResults& results, Progress& progress) {
   progress.clear();
 }
 
+void write_graph(const Simulation& simulation, const std::string& path) {
+  const std::string dot = simulation.step_graph();
+  on_rank_zero(simulation.communicator(), [&] {
+    OutputFile file(path);
+    file.write(dot);
+    file.commit();
+  });
+}
+
 }  // namespace
 
 void run_deck(const Communicator& world, const RunArguments& arguments) {
   std::optional<StepLimit> limit;
   LoadedDeck loaded = load(world, arguments, limit);
   const Model& model = loaded.deck.model;
-  Simulation simulation(model, loaded.particles, world.handle(), arguments.options);
+  RunOptions options = arguments.options;
+  std::optional<RecordedRun> recorded;
+  if (options.exchange == "replay") recorded = record_run(world, loaded, arguments, options);
+  Simulation simulation(model, loaded.particles, world.handle(), options);
+  if (!arguments.graph.empty()) write_graph(simulation, arguments.graph);
   const std::vector<Ring> rings = find_rings(loaded.deck.sources, loaded.begins, loaded.particles);
   catch_signals();
   const RunFolder folder = folder_of(arguments);
@@ -80,7 +95,9 @@ void run_deck(const Communicator& world, const RunArguments& arguments) {
   advance(simulation, results, progress);
   const bool interrupted = simulation.step() < model.time.num_steps;
   const RunSummary summary = results.finish(interrupted);
+  if (arguments.options.trace) simulation.write_trace(folder.file("trace.json"));
   if (world.is_root() && !arguments.quiet) print_summary(summary, folder, model);
+  if (recorded) compare_replay(simulation, *recorded, simulation.digest(), arguments.quiet);
 }
 
 }  // namespace barchan::app

@@ -35,6 +35,8 @@ std::string energy_of(const RunSummary& s) {
 
 void add_communication(const RunSummary& s, Rows& rows) {
   if (s.ranks == 1) return;
+  if (s.choice.is_measured) rows.push_back({"", s.choice.reason});
+  if (!s.choice.hint.empty()) rows.push_back({"", "one-sided: " + s.choice.hint});
   rows.push_back(
       {"communication",
        fmt::format("{} in flight, {} exposed: {} hidden", readable_seconds(s.in_flight_seconds),

@@ -1,0 +1,98 @@
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include <barchan/app/commands.hpp>
+#include <barchan/app/readable.hpp>
+
+namespace barchan::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Rows = std::vector<std::vector<std::string>>;
+
+std::string microseconds(double seconds) {
+  const double us = 1e6 * seconds;
+  if (us < 10.0) return fmt::format("{:.2f}", us);
+  return us < 1000.0 ? fmt::format("{:.1f}", us) : grouped(static_cast<std::int64_t>(us + 0.5));
+}
+
+std::string size_of(std::size_t bytes) {
+  if (bytes % (1 << 20) == 0) return fmt::format("{} MiB", bytes >> 20);
+  if (bytes % (1 << 10) == 0) return fmt::format("{} KiB", bytes >> 10);
+  return fmt::format("{} B", bytes);
+}
+
+std::string links_of(const ProbeReport& r) {
+  if (r.num_on_node == r.num_links) return "all within a node";
+  if (r.num_on_node == 0) return "all between nodes";
+  return fmt::format("{} within a node, {} between nodes", r.num_on_node,
+                     r.num_links - r.num_on_node);
+}
+
+void print_table(const ProbeReport& r, int ranks) {
+  Rows head{{"MPI", r.mpi_library + ", thread level " + r.thread_level},
+            {"window", r.window.empty() ? "none can be made here" : r.window},
+            {"links", fmt::format("{} between {} ranks, {}", r.num_links, ranks, links_of(r))}};
+  std::fputs(table(head, 2).c_str(), stdout);
+  Rows rows{{"exchange", "message", "half trip [µs]", "both ways [µs]", "CPU [µs]", "overlap",
+             "availability"}};
+  for (const ProbeRow& row : r.plain_put) {
+    rows.push_back({row.exchange, size_of(row.bytes), microseconds(row.cost.half_round_trip), "-",
+                    "-", "-", "-"});
+  }
+  for (const ProbeRow& row : r.rows) {
+    const ExchangeCost& c = row.cost;
+    rows.push_back({row.exchange, size_of(row.bytes), microseconds(c.half_round_trip),
+                    microseconds(c.both_ways), microseconds(c.cpu), percent(c.overlap),
+                    percent(c.availability)});
+  }
+  std::fputs("\n", stdout);
+  std::fputs(table(rows).c_str(), stdout);
+  for (const ProbeObstacle& o : r.obstacles) {
+    std::fprintf(stdout, "%s: %s\n", o.exchange.c_str(), o.reason.c_str());
+  }
+  std::fflush(stdout);
+}
+
+Json row_of(const ProbeRow& row) {
+  return {{"exchange", row.exchange},
+          {"bytes", row.bytes},
+          {"half_round_trip_seconds", row.cost.half_round_trip},
+          {"both_ways_seconds", row.cost.both_ways},
+          {"cpu_seconds", row.cost.cpu},
+          {"overlap", row.cost.overlap},
+          {"availability", row.cost.availability}};
+}
+
+void print_json(const ProbeReport& r, int ranks) {
+  Json json{{"mpi", r.mpi_library}, {"thread_level", r.thread_level},
+            {"window", r.window},   {"ranks", ranks},
+            {"links", r.num_links}, {"links_on_node", r.num_on_node}};
+  json["plain_put"] = json["exchanges"] = json["obstacles"] = Json::array();
+  for (const ProbeRow& row : r.plain_put) {
+    json["plain_put"].push_back(
+        {{"bytes", row.bytes}, {"half_round_trip_seconds", row.cost.half_round_trip}});
+  }
+  for (const ProbeRow& row : r.rows) json["exchanges"].push_back(row_of(row));
+  for (const ProbeObstacle& o : r.obstacles) {
+    json["obstacles"].push_back({{"exchange", o.exchange}, {"reason", o.reason}});
+  }
+  std::puts(json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+void probe(const Communicator& world, const ProbeArguments& arguments) {
+  const ProbeReport report = probe_exchanges(world, arguments.options);
+  if (!world.is_root()) return;
+  if (arguments.json)
+    print_json(report, world.size());
+  else
+    print_table(report, world.size());
+}
+
+}  // namespace barchan::app
