@@ -1,0 +1,90 @@
+"""One measurement: a program on a case, started on two hosts."""
+import json
+import os
+import re
+import shlex
+import subprocess
+
+import cases
+import launch
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+NETLAB = os.path.join(HERE, "..", "netlab", "netlab")
+LOOP = re.compile(r"Loop time of ([\d.eE+-]+) on \d+ procs for (\d+) steps with (\d+) atoms")
+SECONDS = 1800  # a run that takes longer hangs
+
+
+class Case:
+    """Settled soil, `copies` of 5,000 disks side by side, as files of both codes."""
+
+    def __init__(self, size, copies, data, work):
+        self.case = cases.Case(f"hiding-{size}", f"2D soil, {size} disks", steps=0, copies=(copies, 1), **cases.SOIL)
+        self.inputs = cases.prepare(self.case, data, work)
+        self.num_particles = self.inputs.num_particles
+        self.folder = os.path.join(work, self.case.name)
+
+
+def starter(options, delay, program):
+    """The words before a program's own, by which it runs on two hosts."""
+    if options.launcher:
+        return shlex.split(options.launcher)
+    words = [NETLAB, "--hosts", "2", "--delay", f"{delay}us", "--rate", options.rate, "--mtu", options.mtu]
+    if options.realtime:
+        words.append("--realtime")
+    if program.osc:
+        words += ["--mca", "osc", program.osc]
+    return words + ["--"]
+
+
+def run(command, cwd=None):
+    try:
+        done = subprocess.run(command, cwd=cwd, env={**os.environ, **launch.ENVIRONMENT}, text=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=SECONDS)
+    except subprocess.TimeoutExpired:
+        raise launch.Failed(f"{shlex.join(command)}\nran into the limit of {SECONDS} s") from None
+    if done.returncode != 0:
+        raise launch.Failed(f"{shlex.join(command)}\nended with status {done.returncode}: {done.stdout.strip()[-500:]}")
+
+
+class Barchan:
+    def __init__(self, path, exchange, schedule, osc):
+        self.path, self.name, self.schedule, self.osc = path, exchange, schedule, osc
+        self.label = f"{exchange}, {schedule}"
+
+    def run(self, start, case, steps):
+        out = os.path.join(case.folder, "barchan.out")
+        command = [*start, self.path, "run", cases.deck(case.case), "--out", out, "--force", "--quiet", "--threads", "1",
+                   "--steps", str(steps), "--exchange", self.name, "--schedule", self.schedule]
+        for key, value in cases.settings(case.case, case.inputs).items():
+            command += ["--set", f"{key}={value}"]
+        run(command)
+        with open(os.path.join(out, "run.json")) as file:
+            result = json.load(file)
+        times = result["communication"]
+        per_step = 1e6 / max(1, result["steps"])
+        work = sum(result["phases"][name] for name in ("forces", "bands", "search") if name in result["phases"])
+        return {"step_us": per_step * result["loop_seconds"], "in_flight_us": per_step * times["in_flight_seconds"],
+                "exposed_us": per_step * times["exposed_seconds"], "hidden": times["hidden_fraction"],
+                "work_us": per_step * work, "exchange": result["exchange"], "transport": result["transport"],
+                "rebuilds": result["rebuilds"], "kinds": {kind: per_step * times[kind]["exposed_seconds"]
+                                                          for kind in ("halo", "rebuild", "reductions") if kind in times},
+                "digest": result["state_digest"]}
+
+
+class Lammps:
+    name, schedule, osc, label = "LAMMPS", "", None, "LAMMPS"
+
+    def __init__(self, path):
+        self.path = path
+
+    def run(self, start, case, steps):
+        log = os.path.join(case.folder, "lammps.log")
+        command = [*start, self.path, "-in", cases.script(case.case, "lammps"), "-log", log, "-screen", "none"]
+        for name, value in (("data", case.inputs.lammps), ("steps", steps), ("width", f"{float(case.case.hi[0]):g}")):
+            command += ["-var", name, str(value)]
+        run(command, cwd=case.folder)
+        with open(log) as file:
+            found = LOOP.search(file.read())
+        if not found:
+            raise launch.Failed(f"LAMMPS wrote no loop time into {log}")
+        return {"step_us": 1e6 * float(found[1]) / int(found[2])}

@@ -1,0 +1,77 @@
+"""Measurements as tables."""
+import report
+
+
+def group(found):
+    """{(size, program, schedule): {delay: [measurement, …]}}, in the order of the runs."""
+    groups = {}
+    for m in found:
+        if "step_us" in m:
+            groups.setdefault((m["size"], m["program"], m["schedule"]), {}).setdefault(m["delay_us"], []).append(m)
+    return groups
+
+
+def median_of(measurements, key):
+    values = [m[key] for m in measurements if key in m]
+    return report.median(values) if values else None
+
+
+def slope(by_delay):
+    """µs of step per µs of delay: least squares over all delays."""
+    points = [(delay, median_of(ms, "step_us")) for delay, ms in by_delay.items() if delay is not None]
+    if len(points) < 2:
+        return None
+    mean_x = sum(x for x, _ in points) / len(points)
+    mean_y = sum(y for _, y in points) / len(points)
+    return sum((x - mean_x) * (y - mean_y) for x, y in points) / sum((x - mean_x) ** 2 for x, _ in points)
+
+
+def name_of(program, schedule):
+    return f"{program}, {schedule}" if schedule else program
+
+
+def rows_of(groups, size, delays, key, form):
+    for (of_size, program, schedule), by_delay in groups.items():
+        if of_size != size or all(median_of(ms, key) is None for ms in by_delay.values()):
+            continue
+        cells = [form(median_of(by_delay[d], key)) if d in by_delay else None for d in delays]
+        yield name_of(program, schedule), cells, by_delay
+
+
+def percent(share):
+    return None if share is None else f"{100 * share:.0f} %"
+
+
+def chosen(by_delay):
+    """What `auto` took, by delay."""
+    return ", ".join(dict.fromkeys(ms[0]["exchange"] for ms in by_delay.values() if "exchange" in ms[0]))
+
+
+def markdown(found):
+    groups = group(found)
+    delays = list(dict.fromkeys(m["delay_us"] for m in found))
+    heads = ["here" if d is None else f"{d:,} µs" for d in delays]
+    text = ""
+    for size in dict.fromkeys(m["size"] for m in found):
+        particles = next(m["particles"] for m in found if m["size"] == size)
+        text += f"## {particles:,} disks on two ranks\n\nStep [µs] by one-way delay; slope in µs of step per µs of delay.\n\n"
+        rows = [[name, *cells, slope(by_delay)] for name, cells, by_delay in
+                rows_of(groups, size, delays, "step_us", lambda v: v)]
+        text += report.table(["exchange, schedule", *heads, "slope"], rows)
+        text += "\nExposed [µs a step]: workers waiting for messages or inside MPI.\n\n"
+        text += report.table(["exchange, schedule", *heads],
+                             [[name, *cells] for name, cells, _ in rows_of(groups, size, delays, "exposed_us", lambda v: v)])
+        text += "\nHidden share of the time in flight.\n\n"
+        text += report.table(["exchange, schedule", *heads],
+                             [[name, *cells] for name, cells, _ in rows_of(groups, size, delays, "hidden", percent)])
+        for (of_size, program, schedule), by_delay in groups.items():
+            if of_size == size and program == "auto":
+                text += f"\n`auto`, {schedule}, took: {chosen(by_delay)}.\n"
+        text += "\n"
+    return text + errors(found)
+
+
+def errors(found):
+    lines = {f"- {m['size']}, {m['delay_us']} µs, {name_of(m['program'], m['schedule'])}: {m['error']}"
+             for m in found if "error" in m}
+    return "Did not run:\n" + "\n".join(sorted(lines)) + "\n" if lines else ""
