@@ -14,7 +14,8 @@ class BondedPairs {
   void add(std::int64_t a, std::int64_t b) { pairs_.emplace_back(std::min(a, b), std::max(a, b)); }
   void finish() { std::sort(pairs_.begin(), pairs_.end()); }
   [[nodiscard]] bool contains(std::int64_t a, std::int64_t b) const {
-    return std::binary_search(pairs_.begin(), pairs_.end(), std::pair{std::min(a, b), std::max(a, b)});
+    return std::binary_search(pairs_.begin(), pairs_.end(),
+                              std::pair{std::min(a, b), std::max(a, b)});
   }
 
  private:

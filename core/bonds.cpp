@@ -22,7 +22,8 @@ BondSection bond_section(const BondLaw& law, double length, double radius_a, dou
     s.inertia = 0.25 * s.area * r * r;
     s.polar = 2.0 * s.inertia;
   }
-  const double normal = law.normal_stiffness > 0.0 ? law.normal_stiffness : law.young_modulus / length;
+  const double normal =
+      law.normal_stiffness > 0.0 ? law.normal_stiffness : law.young_modulus / length;
   const double shear = normal / law.stiffness_ratio;
   s.kn = normal * s.area;
   s.ks = shear * s.area;
@@ -50,7 +51,8 @@ void BondSet<Dim>::resolve(ParticleStore<Dim>& store) {
   if (bonds_.empty()) return;
   std::unordered_map<std::int64_t, std::int32_t> where;
   for (std::int32_t i = 0; i < store.size(); ++i) {
-    if ((store.flags[static_cast<std::size_t>(i)] & Store::kBonded) != 0) where[store.id[static_cast<std::size_t>(i)]] = i;
+    if ((store.flags[static_cast<std::size_t>(i)] & Store::kBonded) != 0)
+      where[store.id[static_cast<std::size_t>(i)]] = i;
   }
   const auto find = [&](std::int64_t id) {
     const auto it = where.find(id);
@@ -72,8 +74,10 @@ void BondSet<Dim>::resolve(ParticleStore<Dim>& store) {
   for (const Bond<Dim>& b : bonds_) {
     const std::int32_t i = find(b.id_a), j = find(b.id_b);
     if (i < 0 || j < 0) {
-      throw RunError("the bond between particles " + std::to_string(b.id_a) + " and " + std::to_string(b.id_b) +
-                     " has grown longer than the halo is wide: give it a tensile strength, or a larger search.skin");
+      throw RunError("the bond between particles " + std::to_string(b.id_a) + " and " +
+                     std::to_string(b.id_b) +
+                     " has grown longer than the halo is wide: give it a tensile strength, or a "
+                     "larger search.skin");
     }
     const auto index = static_cast<std::int32_t>(ends_.size());
     ends_.emplace_back(i, j);
@@ -91,7 +95,8 @@ void BondSet<Dim>::resolve(ParticleStore<Dim>& store) {
 
 template <int Dim>
 std::span<const std::int32_t> BondSet<Dim>::compute(Group group, const ParticleStore<Dim>& store,
-                                                    std::span<const BondLaw> laws, const PeriodicBox& box, double dt) {
+                                                    std::span<const BondLaw> laws,
+                                                    const PeriodicBox& box, double dt) {
   just_broken_.clear();
   const auto g = static_cast<std::size_t>(group);
   for (std::int32_t b = group_begin_[g]; b < group_begin_[g + 1]; ++b) {
@@ -107,7 +112,8 @@ std::span<const std::int32_t> BondSet<Dim>::compute(Group group, const ParticleS
 }
 
 template <int Dim>
-void BondSet<Dim>::add_to_rows(ParticleStore<Dim>& store, std::int32_t begin, std::int32_t end) const {
+void BondSet<Dim>::add_to_rows(ParticleStore<Dim>& store, std::int32_t begin,
+                               std::int32_t end) const {
   auto it = std::lower_bound(incidences_.begin(), incidences_.end(), begin,
                              [](const Incidence& p, std::int32_t row) { return p.row < row; });
   for (; it != incidences_.end() && it->row < end; ++it) {
@@ -122,7 +128,8 @@ template <int Dim>
 void BondSet<Dim>::export_group(Group group, std::vector<double>& out) const {
   const auto g = static_cast<std::size_t>(group);
   for (std::int32_t b = group_begin_[g]; b < group_begin_[g + 1]; ++b) {
-    for (const Record& record : force_[static_cast<std::size_t>(b)]) out.insert(out.end(), record.begin(), record.end());
+    for (const Record& record : force_[static_cast<std::size_t>(b)])
+      out.insert(out.end(), record.begin(), record.end());
     out.push_back(is_broken(b) ? 1.0 : 0.0);
   }
 }
@@ -160,8 +167,9 @@ void BondSet<Dim>::index_known() {
 
 template <int Dim>
 std::size_t BondSet<Dim>::bytes() const {
-  return bonds_.capacity() * sizeof(Bond<Dim>) + ends_.capacity() * sizeof(ends_[0]) + broken_.capacity() +
-         incidences_.capacity() * sizeof(Incidence) + force_.capacity() * sizeof(force_[0]);
+  return bonds_.capacity() * sizeof(Bond<Dim>) + ends_.capacity() * sizeof(ends_[0]) +
+         broken_.capacity() + incidences_.capacity() * sizeof(Incidence) +
+         force_.capacity() * sizeof(force_[0]);
 }
 
 template BondSection bond_section<2>(const BondLaw&, double, double, double);

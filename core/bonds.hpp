@@ -27,18 +27,25 @@ struct Bond {
   std::array<double, kState> state{};
 };
 
-/// The bonds of one lane: every bond with an owned end. A bond across a cut lives on both sides and stays equal there.
+/// The bonds of one lane: every bond with an owned end. A bond across a cut lives on both sides and
+/// stays equal there.
 ///
-/// Elastic beam after Potyondy & Cundall 2004, doi:10.1016/j.ijrmms.2004.09.011: normal force from the length, shear
-/// and moments incremental, all with a dashpot. Breaks where
+/// Elastic beam after Potyondy & Cundall 2004, doi:10.1016/j.ijrmms.2004.09.011: normal force from
+/// the length, shear and moments incremental, all with a dashpot. Breaks where
 ///   tension/A + |M|·R/I > tensile strength  or  |shear|/A (+ |twist|·R/J) > shear strength.
 /// The force is computed from a to b on either side of a cut, so both sides agree to the bit.
 template <int Dim>
 class BondSet {
  public:
-  enum Group { Owned, Left, Right, kNumGroups };  ///< both ends owned, or the other end a ghost of that side
+  enum Group {
+    Owned,
+    Left,
+    Right,
+    kNumGroups
+  };  ///< both ends owned, or the other end a ghost of that side
 
-  /// Takes a bond; if it is known, its state is replaced when `is_current`. @pre resolve() before the next step
+  /// Takes a bond; if it is known, its state is replaced when `is_current`. @pre resolve() before
+  /// the next step
   void add(const Bond<Dim>& bond, bool is_current = true);
   [[nodiscard]] const std::vector<Bond<Dim>>& bonds() const { return bonds_; }
   [[nodiscard]] bool empty() const { return bonds_.empty(); }
@@ -48,29 +55,40 @@ class BondSet {
   void resolve(ParticleStore<Dim>& store);
 
   /// Forces of one group, kept until add_to_rows. @return bonds that broke now, by index
-  std::span<const std::int32_t> compute(Group group, const ParticleStore<Dim>& store, std::span<const BondLaw> laws,
-                                        const PeriodicBox& box, double dt);
+  std::span<const std::int32_t> compute(Group group, const ParticleStore<Dim>& store,
+                                        std::span<const BondLaw> laws, const PeriodicBox& box,
+                                        double dt);
 
   /// Adds the kept forces to rows [begin, end), each row's in canonical order of the partner.
   void add_to_rows(ParticleStore<Dim>& store, std::int32_t begin, std::int32_t end) const;
 
-  // The published exchange: one side of a cut computes, the other takes the forces. kExported doubles a bond.
+  // The published exchange: one side of a cut computes, the other takes the forces. kExported
+  // doubles a bond.
   static constexpr int kExported = 2 * Layout<Dim>::kForce + 1;
   [[nodiscard]] std::int32_t size(Group group) const {
-    return group_begin_[static_cast<std::size_t>(group) + 1] - group_begin_[static_cast<std::size_t>(group)];
+    return group_begin_[static_cast<std::size_t>(group) + 1] -
+           group_begin_[static_cast<std::size_t>(group)];
   }
   void export_group(Group group, std::vector<double>& out) const;
   void import_group(Group group, const ParticleStore<Dim>& store, const double* in);
 
-  [[nodiscard]] std::int32_t end_a(std::int32_t bond) const { return ends_[static_cast<std::size_t>(bond)].first; }
-  [[nodiscard]] std::int32_t end_b(std::int32_t bond) const { return ends_[static_cast<std::size_t>(bond)].second; }
-  [[nodiscard]] bool is_broken(std::int32_t bond) const { return broken_[static_cast<std::size_t>(bond)]; }
+  [[nodiscard]] std::int32_t end_a(std::int32_t bond) const {
+    return ends_[static_cast<std::size_t>(bond)].first;
+  }
+  [[nodiscard]] std::int32_t end_b(std::int32_t bond) const {
+    return ends_[static_cast<std::size_t>(bond)].second;
+  }
+  [[nodiscard]] bool is_broken(std::int32_t bond) const {
+    return broken_[static_cast<std::size_t>(bond)];
+  }
   void drop_broken();
-  [[nodiscard]] std::int64_t num_broken() const { return num_broken_; }  ///< owned by their lower id, since the start
+  [[nodiscard]] std::int64_t num_broken() const {
+    return num_broken_;
+  }  ///< owned by their lower id, since the start
   void set_num_broken(std::int64_t n) { num_broken_ = n; }
   /// Elastic energy of the bonds whose lower-id end is owned [J].
-  [[nodiscard]] double energy(std::int32_t bond, const ParticleStore<Dim>& store, std::span<const BondLaw> laws,
-                              const PeriodicBox& box) const;
+  [[nodiscard]] double energy(std::int32_t bond, const ParticleStore<Dim>& store,
+                              std::span<const BondLaw> laws, const PeriodicBox& box) const;
   [[nodiscard]] std::size_t bytes() const;
 
  private:
@@ -81,7 +99,8 @@ class BondSet {
   using Record = std::array<double, Layout<Dim>::kForce>;
 
   void index_known();
-  bool respond(std::int32_t bond, const ParticleStore<Dim>& store, const BondLaw& law, const PeriodicBox& box, double dt);
+  bool respond(std::int32_t bond, const ParticleStore<Dim>& store, const BondLaw& law,
+               const PeriodicBox& box, double dt);
 
   std::vector<Bond<Dim>> bonds_;
   std::map<std::pair<std::int64_t, std::int64_t>, std::size_t> known_;  ///< by ids

@@ -5,7 +5,8 @@
 namespace barchan {
 
 template <int Dim>
-void CellIndex::index(const Grid<Dim>& grid, const ParticleStore<Dim>& store, Rows rows, int from_slab, int to_slab) {
+void CellIndex::index(const Grid<Dim>& grid, const ParticleStore<Dim>& store, Rows rows,
+                      int from_slab, int to_slab) {
   slab_begin = from_slab;
   slab_end = to_slab;
   first_key = from_slab * grid.slab_size();
@@ -20,8 +21,8 @@ void CellIndex::index(const Grid<Dim>& grid, const ParticleStore<Dim>& store, Ro
 }
 
 template <int Dim>
-void Neighbourhood<Dim>::collect(const Grid<Dim>& grid, const CellIndex& index, std::int64_t key, int first_offset,
-                                 int last_offset, std::int64_t after_key) {
+void Neighbourhood<Dim>::collect(const Grid<Dim>& grid, const CellIndex& index, std::int64_t key,
+                                 int first_offset, int last_offset, std::int64_t after_key) {
   count = 0;
   sorted_ = true;
   const int n0 = grid.cells(0), nz = grid.cells(Dim - 1), ny = Dim == 3 ? grid.cells(1) : 1;
@@ -49,8 +50,8 @@ void Neighbourhood<Dim>::collect(const Grid<Dim>& grid, const CellIndex& index, 
 }
 
 template <int Dim>
-void Neighbourhood<Dim>::add_line(const Grid<Dim>& grid, const CellIndex& index, std::int64_t line, int z,
-                                  std::int64_t after_key) {
+void Neighbourhood<Dim>::add_line(const Grid<Dim>& grid, const CellIndex& index, std::int64_t line,
+                                  int z, std::int64_t after_key) {
   const int nz = grid.cells(Dim - 1);
   const auto clip = [&](int from, int to) {
     const std::int64_t begin = std::max(line + from, after_key + 1), end = line + to;
@@ -83,7 +84,8 @@ void Neighbourhood<Dim>::finish() {
   // An axis of one or two periodic cells is met twice.
   int kept = 0;
   for (int q = 0; q < count; ++q) {
-    if (kept == 0 || ranges[static_cast<std::size_t>(q)].begin >= ranges[static_cast<std::size_t>(kept - 1)].end) {
+    if (kept == 0 || ranges[static_cast<std::size_t>(q)].begin >=
+                         ranges[static_cast<std::size_t>(kept - 1)].end) {
       ranges[static_cast<std::size_t>(kept++)] = ranges[static_cast<std::size_t>(q)];
     }
   }

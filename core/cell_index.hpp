@@ -21,11 +21,13 @@ struct CellIndex {
 
   /// @pre keys of rows [begin, end) ascend and lie in the slabs
   template <int Dim>
-  void index(const Grid<Dim>& grid, const ParticleStore<Dim>& store, Rows rows, int from_slab, int to_slab);
+  void index(const Grid<Dim>& grid, const ParticleStore<Dim>& store, Rows rows, int from_slab,
+             int to_slab);
 
   [[nodiscard]] bool has_slab(int slab) const { return slab >= slab_begin && slab < slab_end; }
   [[nodiscard]] Rows cells(std::int64_t key_begin, std::int64_t key_end) const {
-    return {start[static_cast<std::size_t>(key_begin - first_key)], start[static_cast<std::size_t>(key_end - first_key)]};
+    return {start[static_cast<std::size_t>(key_begin - first_key)],
+            start[static_cast<std::size_t>(key_end - first_key)]};
   }
   [[nodiscard]] std::int32_t first_row(int slab, std::int64_t slab_size) const {
     return start[static_cast<std::size_t>((slab - slab_begin) * slab_size)];
@@ -40,11 +42,12 @@ struct Neighbourhood {
   std::array<Rows, 32> ranges;
   int count = 0;
 
-  void collect(const Grid<Dim>& grid, const CellIndex& index, std::int64_t key, int first_offset, int last_offset,
-               std::int64_t after_key);
+  void collect(const Grid<Dim>& grid, const CellIndex& index, std::int64_t key, int first_offset,
+               int last_offset, std::int64_t after_key);
 
  private:
-  void add_line(const Grid<Dim>& grid, const CellIndex& index, std::int64_t line, int z, std::int64_t after_key);
+  void add_line(const Grid<Dim>& grid, const CellIndex& index, std::int64_t line, int z,
+                std::int64_t after_key);
   void add(Rows rows);
   void finish();
   bool sorted_ = true;

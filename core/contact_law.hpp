@@ -2,22 +2,25 @@
 
 namespace barchan {
 
-// Linear spring–dashpot with Coulomb friction, written once for one pair, four or eight (S: simd/*.hpp).
+// Linear spring–dashpot with Coulomb friction, written once for one pair, four or eight (S:
+// simd/*.hpp).
 //
-//   fn = min(0, cn·vn − kn·overlap)                 the no-tension clamp; the cap is +inf when switched off
-//   ft = kt·s + ct·vt,  s' = s + vt·dt,  |ft| <= mu·|fn|, s' cut back to the sliding limit
+//   fn = min(0, cn·vn − kn·overlap)                 the no-tension clamp; the cap is +inf when
+//   switched off ft = kt·s + ct·vt,  s' = s + vt·dt,  |ft| <= mu·|fn|, s' cut back to the sliding
+//   limit
 //
-// Lengths [m], velocities [m/s], forces [N]. The response is the force on the first particle of the pair; the
-// second one gets its negative, and both get the same torque / radius. All differences are second minus first,
-// so swapping the two negates the force exactly: both sides of a cut agree to the bit.
-// Sources: Cundall & Strack 1979, doi:10.1680/geot.1979.29.1.47; the clamp is ours.
+// Lengths [m], velocities [m/s], forces [N]. The response is the force on the first particle of the
+// pair; the second one gets its negative, and both get the same torque / radius. All differences
+// are second minus first, so swapping the two negates the force exactly: both sides of a cut agree
+// to the bit. Sources: Cundall & Strack 1979, doi:10.1680/geot.1979.29.1.47; the clamp is ours.
 
-/// Constants of one law, one lane each. The dashpots are constant + rate·m_eff + critical·sqrt(m_eff).
+/// Constants of one law, one lane each. The dashpots are constant + rate·m_eff +
+/// critical·sqrt(m_eff).
 template <class S>
 struct LawConstants {
   using Real = typename S::Real;
   Real kn, kt, inverse_kt, mu, cap;
-  Real cn, ct;                                    ///< constant parts [N·s/m]
+  Real cn, ct;                                      ///< constant parts [N·s/m]
   Real cn_rate, ct_rate, cn_critical, ct_critical;  ///< read only where damping depends on mass
 };
 
@@ -28,9 +31,9 @@ struct PairState;
 template <class S>
 struct PairState<S, 2> {
   using Real = typename S::Real;
-  Real dx, dy, reach;          ///< reach = r_i + r_j
-  Real vx, vy, surface;        ///< surface = u_i + u_j
-  Real inverse_mass;           ///< 1/m_i + 1/m_j
+  Real dx, dy, reach;    ///< reach = r_i + r_j
+  Real vx, vy, surface;  ///< surface = u_i + u_j
+  Real inverse_mass;     ///< 1/m_i + 1/m_j
 };
 
 template <class S>
@@ -59,12 +62,14 @@ struct Dashpots {
   typename S::Real cn, ct;
 };
 
-/// What the dashpots of a run depend on; the cheapest that serves all its laws. A law gives the same bits at any level.
+/// What the dashpots of a run depend on; the cheapest that serves all its laws. A law gives the
+/// same bits at any level.
 enum class Damping { Constant, Rate, Critical };
 
 /// The two dashpots at a given reduced mass.
 template <class S, Damping D>
-[[gnu::always_inline]] inline Dashpots<S> dashpots(const LawConstants<S>& c, typename S::Real reduced_mass) {
+[[gnu::always_inline]] inline Dashpots<S> dashpots(const LawConstants<S>& c,
+                                                   typename S::Real reduced_mass) {
   if constexpr (D == Damping::Constant) {
     return {c.cn, c.ct};
   } else {
@@ -80,7 +85,8 @@ template <class S, Damping D>
 
 /// 1/d and the reduced mass, by one division where both are wanted.
 template <class S, Damping D>
-[[gnu::always_inline]] inline typename S::Real inverse_of(typename S::Real d, typename S::Real inverse_mass,
+[[gnu::always_inline]] inline typename S::Real inverse_of(typename S::Real d,
+                                                          typename S::Real inverse_mass,
                                                           typename S::Real& reduced_mass) {
   if constexpr (D == Damping::Constant) {
     return S::set(1.0) / d;
@@ -91,11 +97,14 @@ template <class S, Damping D>
   }
 }
 
-/// @param spring  tangential spring [m], replaced by its value after the step; zero where the pair does not touch
+/// @param spring  tangential spring [m], replaced by its value after the step; zero where the pair
+/// does not touch
 /// @return which lanes touch
 template <class S, Damping D>
-[[gnu::always_inline]] inline typename S::Mask respond(const LawConstants<S>& c, const PairState<S, 2>& p,
-                                                       typename S::Real dt, typename S::Real& spring,
+[[gnu::always_inline]] inline typename S::Mask respond(const LawConstants<S>& c,
+                                                       const PairState<S, 2>& p,
+                                                       typename S::Real dt,
+                                                       typename S::Real& spring,
                                                        PairForce<S, 2>& out) {
   using Real = typename S::Real;
   const Real zero = S::set(0.0);
@@ -132,8 +141,10 @@ template <class S, Damping D>
 
 /// @param s  tangential spring, three components [m], kept in the tangent plane
 template <class S, Damping D>
-[[gnu::always_inline]] inline typename S::Mask respond(const LawConstants<S>& c, const PairState<S, 3>& p,
-                                                       typename S::Real dt, typename S::Real (&s)[3],
+[[gnu::always_inline]] inline typename S::Mask respond(const LawConstants<S>& c,
+                                                       const PairState<S, 3>& p,
+                                                       typename S::Real dt,
+                                                       typename S::Real (&s)[3],
                                                        PairForce<S, 3>& out) {
   using Real = typename S::Real;
   const Real zero = S::set(0.0);

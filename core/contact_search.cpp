@@ -8,7 +8,8 @@ template <int Dim>
 std::uint8_t ContactSearch<Dim>::law(std::int32_t i, std::int32_t j) const {
   using Store = ParticleStore<Dim>;
   const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-  if ((store_.flags[a] & store_.flags[b] & Store::kBonded) != 0 && rule_.bonded->contains(store_.id[a], store_.id[b])) {
+  if ((store_.flags[a] & store_.flags[b] & Store::kBonded) != 0 &&
+      rule_.bonded->contains(store_.id[a], store_.id[b])) {
     return LawTable::kBonded;
   }
   return rule_.laws->code(store_.type[a], store_.type[b]);
@@ -59,13 +60,14 @@ void ContactSearch<Dim>::owned(const CellIndex& cells, Rows rows, PairList& list
       last_key = key;
     }
     scan(i, {i + 1, cells.cells(key, key + 1).end}, list);
-    for (int q = 0; q < around.count; ++q) scan(i, around.ranges[static_cast<std::size_t>(q)], list);
+    for (int q = 0; q < around.count; ++q)
+      scan(i, around.ranges[static_cast<std::size_t>(q)], list);
   }
 }
 
 template <int Dim>
-void ContactSearch<Dim>::across(const CellIndex& lower, const CellIndex& higher, int lower_to_higher,
-                                PairList& list) const {
+void ContactSearch<Dim>::across(const CellIndex& lower, const CellIndex& higher,
+                                int lower_to_higher, PairList& list) const {
   const std::int32_t begin = lower.start.front(), end = lower.start.back();
   const Rows all{higher.start.front(), higher.start.back()};
   Neighbourhood<Dim> around;
@@ -74,8 +76,10 @@ void ContactSearch<Dim>::across(const CellIndex& lower, const CellIndex& higher,
       scan(i, all, list);
       continue;
     }
-    around.collect(grid_, higher, store_.key[static_cast<std::size_t>(i)], lower_to_higher, lower_to_higher, -1);
-    for (int q = 0; q < around.count; ++q) scan(i, around.ranges[static_cast<std::size_t>(q)], list);
+    around.collect(grid_, higher, store_.key[static_cast<std::size_t>(i)], lower_to_higher,
+                   lower_to_higher, -1);
+    for (int q = 0; q < around.count; ++q)
+      scan(i, around.ranges[static_cast<std::size_t>(q)], list);
   }
 }
 

@@ -13,7 +13,7 @@ namespace barchan {
 
 /// What decides whether a pair is a candidate, and which law it gets.
 struct SearchRule {
-  double skin = 0.0;          ///< [m]
+  double skin = 0.0;  ///< [m]
   ContactSearchKind kind = ContactSearchKind::Cells;
   const LawTable* laws = nullptr;
   const BondedPairs* bonded = nullptr;
@@ -22,19 +22,24 @@ struct SearchRule {
 /// Candidates: pairs closer than r_i + r_j + skin, lower particle first, sorted by both indices.
 /// Pairs of two fixed particles are left out; a bonded pair gets the null law.
 ///
-/// `AllPairs` looks at every pair and is the reference; `Cells` finds the same pairs in linear time.
+/// `AllPairs` looks at every pair and is the reference; `Cells` finds the same pairs in linear
+/// time.
 template <int Dim>
 class ContactSearch {
  public:
   ContactSearch(const Grid<Dim>& grid, const ParticleStore<Dim>& store, const SearchRule& rule)
       : grid_(grid), store_(store), rule_(rule) {}
 
-  /// Appends the candidates of owned rows [rows.begin, rows.end) with owned partners; row_begin[i] = first pair of row i.
-  void owned(const CellIndex& cells, Rows rows, PairList& list, std::vector<std::int64_t>& row_begin) const;
+  /// Appends the candidates of owned rows [rows.begin, rows.end) with owned partners; row_begin[i]
+  /// = first pair of row i.
+  void owned(const CellIndex& cells, Rows rows, PairList& list,
+             std::vector<std::int64_t>& row_begin) const;
 
-  /// Appends the candidates across a cut. @param lower, higher  one slab each, one of them of ghosts
+  /// Appends the candidates across a cut. @param lower, higher  one slab each, one of them of
+  /// ghosts
   /// @param lower_to_higher  slab offset as the grid counts it, +1 or −1 (periodic: around the end)
-  void across(const CellIndex& lower, const CellIndex& higher, int lower_to_higher, PairList& list) const;
+  void across(const CellIndex& lower, const CellIndex& higher, int lower_to_higher,
+              PairList& list) const;
 
  private:
   template <bool Periodic>

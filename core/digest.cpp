@@ -7,8 +7,8 @@
 
 namespace barchan {
 
-std::uint64_t particle_digest(std::int64_t id, std::span<const double> position, std::span<const double> velocity,
-                              std::span<const double> omega) {
+std::uint64_t particle_digest(std::int64_t id, std::span<const double> position,
+                              std::span<const double> velocity, std::span<const double> omega) {
   std::array<std::byte, 8 * 10> bytes{};
   std::size_t used = 0;
   const auto put = [&](const void* from, std::size_t count) {

@@ -13,7 +13,8 @@ struct SourcePlace {
   std::int64_t column = 0;
 };
 
-/// The user's input is wrong: what is wrong, where, and what would be right. The command exits with 2.
+/// The user's input is wrong: what is wrong, where, and what would be right. The command exits
+/// with 2.
 class InputError : public std::runtime_error {
  public:
   /// what() reads `file:line:column: what (remedy)`.
@@ -26,7 +27,8 @@ class InputError : public std::runtime_error {
   SourcePlace place_;
 };
 
-/// The run went wrong: a non-finite state, a full disk, a lost message. The command saves what it can and exits with 1.
+/// The run went wrong: a non-finite state, a full disk, a lost message. The command saves what it
+/// can and exits with 1.
 class RunError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -31,7 +31,8 @@ void ExactSum::add(double term) {
     magnitude <<= low % 32;
   }
   for (; magnitude != 0; ++digit, magnitude >>= 32) {
-    digits_[static_cast<std::size_t>(digit)] += sign * static_cast<std::int64_t>(magnitude & 0xffffffffU);
+    digits_[static_cast<std::size_t>(digit)] +=
+        sign * static_cast<std::int64_t>(magnitude & 0xffffffffU);
   }
 }
 

@@ -5,10 +5,12 @@
 
 namespace barchan {
 
-/// A sum of doubles that does not depend on their order: a fixed-point number of 32-bit digits from 2^-288 to 2^320.
+/// A sum of doubles that does not depend on their order: a fixed-point number of 32-bit digits from
+/// 2^-288 to 2^320.
 ///
-/// Every digit is an int64, so partial sums of up to 2^30 terms may be added digit by digit in any order, on any
-/// rank (an integer MPI_SUM). Bits below 2^-288 are cut off term by term. Non-finite terms make the sum NaN.
+/// Every digit is an int64, so partial sums of up to 2^30 terms may be added digit by digit in any
+/// order, on any rank (an integer MPI_SUM). Bits below 2^-288 are cut off term by term. Non-finite
+/// terms make the sum NaN.
 class ExactSum {
  public:
   static constexpr int kDigits = 20;

@@ -19,11 +19,13 @@ Grid<Dim>::Grid(const Domain& domain, double cutoff, std::int64_t num_particles)
     end_[a] = domain.hi[a];
     origin_[a] = lo_[static_cast<std::size_t>(k)] = domain.lo[a];
     periodic_[static_cast<std::size_t>(k)] = domain.periodic[static_cast<std::size_t>(a)];
-    cells_[static_cast<std::size_t>(k)] = static_cast<int>(std::clamp(std::floor(length / cutoff), 1.0, 1e6));
+    cells_[static_cast<std::size_t>(k)] =
+        static_cast<int>(std::clamp(std::floor(length / cutoff), 1.0, 1e6));
     total *= cells(k);
     if (!is_periodic(k)) continue;
     if (length < 2.0 * cutoff) {
-      throw InputError("the periodic domain is " + std::to_string(length) + " m long, shorter than twice the reach of a contact",
+      throw InputError("the periodic domain is " + std::to_string(length) +
+                           " m long, shorter than twice the reach of a contact",
                        "make it at least " + std::to_string(2.0 * cutoff) + " m");
     }
     box_.length[a] = length;

@@ -12,16 +12,18 @@ namespace barchan {
 
 /// The one global grid of a run: it orders the particles, and cuts between strips lie on its faces.
 ///
-/// Cells are at least `cutoff` wide, so a particle's partners are in its own cell or in a neighbouring one.
-/// A cell's key grows fastest along the last axis and slowest along the strip axis; a slab is the layer of cells
-/// with one strip coordinate. Particles ordered by (key, id) are in canonical order.
+/// Cells are at least `cutoff` wide, so a particle's partners are in its own cell or in a
+/// neighbouring one. A cell's key grows fastest along the last axis and slowest along the strip
+/// axis; a slab is the layer of cells with one strip coordinate. Particles ordered by (key, id) are
+/// in canonical order.
 template <int Dim>
 class Grid {
  public:
   Grid() = default;
 
   /// @param cutoff         reach of the candidate search [m]
-  /// @param num_particles  in all; bounds the number of cells, so that an open domain costs no memory
+  /// @param num_particles  in all; bounds the number of cells, so that an open domain costs no
+  /// memory
   Grid(const Domain& domain, double cutoff, std::int64_t num_particles);
 
   [[nodiscard]] int num_slabs() const { return cells_[0]; }
@@ -31,7 +33,8 @@ class Grid {
   [[nodiscard]] bool is_periodic(int k) const { return periodic_[static_cast<std::size_t>(k)]; }
   [[nodiscard]] const PeriodicBox& box() const { return box_; }
 
-  /// Grid coordinate along the k-th axis in sorting order (0 = strip axis); outside the domain: the last cell.
+  /// Grid coordinate along the k-th axis in sorting order (0 = strip axis); outside the domain: the
+  /// last cell.
   [[nodiscard]] int coordinate(const double* x, int k) const {
     const auto a = static_cast<std::size_t>(k);
     const double c = (x[axis_[a]] - lo_[a]) * inverse_[a];

@@ -46,8 +46,8 @@ struct StepFrame {
 struct Band {
   bool exists = false;
   bool ghosts_first = false;  ///< ghosts precede the owned rows in canonical order
-  bool returns = false;       ///< published scheme: the right-hand side computes the pairs of this cut
-  Rows rows;                  ///< owned rows that are somebody's ghosts
+  bool returns = false;  ///< published scheme: the right-hand side computes the pairs of this cut
+  Rows rows;             ///< owned rows that are somebody's ghosts
   CellIndex ghost_cells;
   PairList across;
 };
@@ -63,11 +63,12 @@ struct Measures {
   void add(const Measures& other);
 };
 
-/// How far particles have come since the last rebuild, and how fast they are. A distance beyond half the skin that was
-/// reached between a check and the rebuild it led to is told by the next check.
+/// How far particles have come since the last rebuild, and how fast they are. A distance beyond
+/// half the skin that was reached between a check and the rebuild it led to is told by the next
+/// check.
 struct Travel {
-  double distance2 = 0.0;  ///< largest squared displacement [m²]
-  double speed2 = 0.0;     ///< largest squared speed [m²/s²]
+  double distance2 = 0.0;    ///< largest squared displacement [m²]
+  double speed2 = 0.0;       ///< largest squared speed [m²/s²]
   std::int64_t outside = 0;  ///< id of a particle that is out of the domain, the largest; 0: none
 };
 
@@ -77,17 +78,18 @@ struct SearchSeconds {
   double chunks = 0.0, bands = 0.0;  ///< all-pairs searches anew in every step
 };
 
-/// A lane is to a thread what a strip is to a rank: slabs [slab_begin, slab_end) with their particles, pairs and
-/// bonds, and ghosts of the slabs next to it. All functions are single-threaded and touch this lane only.
+/// A lane is to a thread what a strip is to a rank: slabs [slab_begin, slab_end) with their
+/// particles, pairs and bonds, and ghosts of the slabs next to it. All functions are
+/// single-threaded and touch this lane only.
 ///
 /// The steady step (`E precedes F` means E happens before F):
 ///   run_chunk(0) precedes run_chunk(1) precedes … ; all chunks precede finish_band(Right);
 ///   run_chunk(0) precedes finish_band(Left);
 ///   unpack_halo(side) precedes finish_band(side) precedes pack_halo(side) of the next step.
 ///
-/// Rows of a band whose ghosts come first in the canonical order wait for them: their pairs are computed with the
-/// chunks, kept (lists `HeldLow`, `HeldHigh`), and summed by finish_band after the ghosts' share. All other rows are
-/// summed and advanced in place, chunk by chunk.
+/// Rows of a band whose ghosts come first in the canonical order wait for them: their pairs are
+/// computed with the chunks, kept (lists `HeldLow`, `HeldHigh`), and summed by finish_band after
+/// the ghosts' share. All other rows are summed and advanced in place, chunk by chunk.
 template <int Dim>
 class Lane {
  public:
@@ -106,7 +108,8 @@ class Lane {
   void finish_band(Side side);
   [[nodiscard]] std::size_t halo_bytes(Side side) const;
   void pack_halo(Side side, std::span<std::byte> message) const;
-  // The published scheme (lane_results.cpp): the lane right of a cut computes, the other one takes the results.
+  // The published scheme (lane_results.cpp): the lane right of a cut computes, the other one takes
+  // the results.
   /// Upper bound of a results message until the next rebuild.
   [[nodiscard]] std::size_t max_results_bytes(Side side) const;
   /// Forces of the pairs and bonds of the left cut, after finish_band(Left).
@@ -115,13 +118,16 @@ class Lane {
   void finish_right_band(std::span<const double> results);
 
   // ---- the rebuild (lane_rebuild.cpp), in this order
-  /// Instead of begin_rebuild at the start of a run: owns these particles and bonds. @pre they lie in the slabs
-  void seed(int slab_begin, int slab_end, std::span<const ParticleData> particles, std::span<const BondData> bonds,
-            std::span<const double> bond_lengths, std::span<const char> is_bonded);
+  /// Instead of begin_rebuild at the start of a run: owns these particles and bonds. @pre they lie
+  /// in the slabs
+  void seed(int slab_begin, int slab_end, std::span<const ParticleData> particles,
+            std::span<const BondData> bonds, std::span<const double> bond_lengths,
+            std::span<const char> is_bonded);
   /// Takes slabs [slab_begin, slab_end) from now on; writes who leaves, with history and bonds.
-  void begin_rebuild(int slab_begin, int slab_end, std::vector<std::byte>& to_left, std::vector<std::byte>& to_right);
-  void absorb(std::span<const std::byte> message);   ///< arrivals
-  void order();                                      ///< canonical order
+  void begin_rebuild(int slab_begin, int slab_end, std::vector<std::byte>& to_left,
+                     std::vector<std::byte>& to_right);
+  void absorb(std::span<const std::byte> message);  ///< arrivals
+  void order();                                     ///< canonical order
   void pack_ghosts(Side side, std::vector<std::byte>& message) const;
   void list_owned();
   void take_ghosts(std::span<const std::byte> left, std::span<const std::byte> right);
@@ -132,8 +138,9 @@ class Lane {
   // ---- checkpoints (lane_checkpoint.cpp)
   /// Everything that the next step depends on, between steps. Reuses the memory of `share`.
   void save(CheckpointShare& share);
-  /// Instead of seed: owns the particles of a checked share as they were at their last rebuild, and queues the history of
-  /// contacts, walls and bonds that have an end among them. order() … restore_history() follow, then put_back().
+  /// Instead of seed: owns the particles of a checked share as they were at their last rebuild, and
+  /// queues the history of contacts, walls and bonds that have an end among them. order() …
+  /// restore_history() follow, then put_back().
   /// @pre they lie in the slabs. Errors: RunError for an id that comes twice
   void restore(int slab_begin, int slab_end, const CheckpointShare& share);
   /// Particles where they were when they were saved, and as fast; ghosts must be refreshed.
@@ -161,9 +168,12 @@ class Lane {
     unpack_history();
     return lists_[name];
   }
-  /// Brings the springs of touching pairs back to their candidates' places. Cheap when nothing is packed.
+  /// Brings the springs of touching pairs back to their candidates' places. Cheap when nothing is
+  /// packed.
   void unpack_history();
-  [[nodiscard]] std::int64_t num_leaving() const { return std::count_if(goes_.begin(), goes_.end(), [](auto g) { return g != 0; }); }
+  [[nodiscard]] std::int64_t num_leaving() const {
+    return std::count_if(goes_.begin(), goes_.end(), [](auto g) { return g != 0; });
+  }
   [[nodiscard]] int slab_begin() const { return slab_begin_; }
   [[nodiscard]] int slab_end() const { return slab_end_; }
   [[nodiscard]] std::int64_t num_pairs() const;
@@ -173,9 +183,11 @@ class Lane {
   World<Dim>& world() { return *world_; }
   [[nodiscard]] const World<Dim>& world() const { return *world_; }
 
-  /// A contact's spring on its way from old lists to new ones; oriented from the handle to the partner.
+  /// A contact's spring on its way from old lists to new ones; oriented from the handle to the
+  /// partner.
   struct LooseContact {
-    std::int32_t handle = 0;  ///< row: before order() a source row, in messages the migrant's number
+    std::int32_t handle =
+        0;  ///< row: before order() a source row, in messages the migrant's number
     std::int64_t partner = 0;
     double spring[L::kSprings] = {};
   };
@@ -185,15 +197,19 @@ class Lane {
     int list = 0;
     std::int64_t begin = 0, end = 0;
     std::int64_t num_touching = 0;
-    std::int32_t prefetch_begin = 0, prefetch_end = 0;  ///< rows that blocks before this one have not met
-    std::int32_t final_row = 0;  ///< rows before this one are complete after the block
-    bool has_extras = false;     ///< bonds, walls or external forces among them
-    bool is_packed = false;      ///< works on its touching pairs, packed to its front
+    std::int32_t prefetch_begin = 0,
+                 prefetch_end = 0;  ///< rows that blocks before this one have not met
+    std::int32_t final_row = 0;     ///< rows before this one are complete after the block
+    bool has_extras = false;        ///< bonds, walls or external forces among them
+    bool is_packed = false;         ///< works on its touching pairs, packed to its front
   };
-  static constexpr std::int64_t kBlockPairs = 32 * kBatch;  ///< a block's rows stay in the first cache
+  static constexpr std::int64_t kBlockPairs =
+      32 * kBatch;  ///< a block's rows stay in the first cache
 
-  void queue_links(const CheckpointShare& share, const std::unordered_map<std::int64_t, std::int32_t>& row_of);
-  /// Largest squared displacement since the last rebuild that a step was computed with: before its drift.
+  void queue_links(const CheckpointShare& share,
+                   const std::unordered_map<std::int64_t, std::int32_t>& row_of);
+  /// Largest squared displacement since the last rebuild that a step was computed with: before its
+  /// drift.
   [[nodiscard]] double distance2_of_last_step() const;
   [[nodiscard]] int direction_of(int slab) const;  ///< 0 here, 1 left, 2 right
   [[nodiscard]] bool computes_bond(std::int32_t bond) const;
@@ -226,8 +242,8 @@ class Lane {
   Slot slot(std::int32_t a, std::int32_t b);
   std::int32_t find_near(std::int32_t row, std::int64_t id) const;
   void place(std::int32_t a, std::int32_t b, const double* spring_a_to_b);
-  void collect_loose(std::vector<std::vector<LooseContact>>& leaving, const std::vector<std::int8_t>& goes,
-                     const std::vector<std::int32_t>& number);
+  void collect_loose(std::vector<std::vector<LooseContact>>& leaving,
+                     const std::vector<std::int8_t>& goes, const std::vector<std::int32_t>& number);
   void carry_owned();
   void gather_rows(const std::vector<std::int32_t>& source);
 

@@ -5,40 +5,50 @@
 #include <barchan/core/error.hpp>
 #include <barchan/core/lane.hpp>
 
-// Contact history on its way through a rebuild. Pairs of rows that both stay are carried by row; all others as
-// loose contacts, by the row of one particle and the id of the other.
+// Contact history on its way through a rebuild. Pairs of rows that both stay are carried by row;
+// all others as loose contacts, by the row of one particle and the id of the other.
 
 namespace barchan {
 namespace {
 
-/// A longer bond would reach past a band to rows that do not wait for ghosts. Refused on one rank too, where it would do no
-/// harm, so that a run does not depend on the number of ranks.
+/// A longer bond would reach past a band to rows that do not wait for ghosts. Refused on one rank
+/// too, where it would do no harm, so that a run does not depend on the number of ranks.
 template <int Dim>
-void require_short_bonds(const Grid<Dim>& grid, const ParticleStore<Dim>& store, const BondSet<Dim>& bonds) {
-  const auto slab = [&](std::int32_t row) { return static_cast<int>(store.key[static_cast<std::size_t>(row)] / grid.slab_size()); };
+void require_short_bonds(const Grid<Dim>& grid, const ParticleStore<Dim>& store,
+                         const BondSet<Dim>& bonds) {
+  const auto slab = [&](std::int32_t row) {
+    return static_cast<int>(store.key[static_cast<std::size_t>(row)] / grid.slab_size());
+  };
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds.bonds().size()); ++b) {
     int apart = std::abs(slab(bonds.end_a(b)) - slab(bonds.end_b(b)));
     if (grid.is_periodic(0)) apart = std::min(apart, grid.num_slabs() - apart);
     if (apart <= 1) continue;
     const auto& bond = bonds.bonds()[static_cast<std::size_t>(b)];
-    throw RunError("the bond between particles " + std::to_string(bond.id_a) + " and " + std::to_string(bond.id_b) +
-                   " has grown longer than a cell is wide: give it a tensile strength, or a larger search.skin");
+    throw RunError("the bond between particles " + std::to_string(bond.id_a) + " and " +
+                   std::to_string(bond.id_b) +
+                   " has grown longer than a cell is wide: give it a tensile strength, or a larger "
+                   "search.skin");
   }
 }
 
 }  // namespace
 
 template <int Dim>
-void Lane<Dim>::collect_loose(std::vector<std::vector<LooseContact>>& leaving, const std::vector<std::int8_t>& goes,
+void Lane<Dim>::collect_loose(std::vector<std::vector<LooseContact>>& leaving,
+                              const std::vector<std::int8_t>& goes,
                               const std::vector<std::int32_t>& number) {
   unpack_history();
   lists_.swap(old_lists_);
   const auto loosen = [&](const PairList& list) {
     for (std::int64_t k = 0; k < list.size(); ++k) {
       if (!list.template has_spring<Dim>(k)) continue;
-      const std::int32_t ends[2] = {list.i[static_cast<std::size_t>(k)], list.j[static_cast<std::size_t>(k)]};
-      const auto leaves = [&](std::int32_t row) { return store_.is_owned(row) && goes[static_cast<std::size_t>(row)] != 0; };
-      const bool both_stay = store_.is_owned(ends[0]) && store_.is_owned(ends[1]) && !leaves(ends[0]) && !leaves(ends[1]);
+      const std::int32_t ends[2] = {list.i[static_cast<std::size_t>(k)],
+                                    list.j[static_cast<std::size_t>(k)]};
+      const auto leaves = [&](std::int32_t row) {
+        return store_.is_owned(row) && goes[static_cast<std::size_t>(row)] != 0;
+      };
+      const bool both_stay = store_.is_owned(ends[0]) && store_.is_owned(ends[1]) &&
+                             !leaves(ends[0]) && !leaves(ends[1]);
       if (both_stay) continue;
       for (int e = 0; e < 2; ++e) {
         if (!store_.is_owned(ends[e])) continue;
@@ -69,7 +79,8 @@ typename Lane<Dim>::Slot Lane<Dim>::slot(std::int32_t a, std::int32_t b) {
     const std::int32_t low = std::min(a, b), high = std::max(a, b);
     const std::int64_t begin = row_begin_[static_cast<std::size_t>(low)];
     for (PairList& list : lists_) {
-      for (std::int64_t k = begin; k < list.size() && list.i[static_cast<std::size_t>(k)] == low; ++k) {
+      for (std::int64_t k = begin; k < list.size() && list.i[static_cast<std::size_t>(k)] == low;
+           ++k) {
         if (list.j[static_cast<std::size_t>(k)] == high) return {&list, k};
       }
     }
@@ -77,15 +88,18 @@ typename Lane<Dim>::Slot Lane<Dim>::slot(std::int32_t a, std::int32_t b) {
   }
   const std::int32_t ghost = store_.is_owned(a) ? b : a, own = store_.is_owned(a) ? a : b;
   Band& band = bands_[ghost < store_.ghost_begin(Right) ? Left : Right];
-  const std::pair<std::int32_t, std::int32_t> wanted = band.ghosts_first ? std::pair(ghost, own) : std::pair(own, ghost);
+  const std::pair<std::int32_t, std::int32_t> wanted =
+      band.ghosts_first ? std::pair(ghost, own) : std::pair(own, ghost);
   PairList& list = band.across;
   std::int64_t low = 0, high = list.size();
   while (low < high && list.i[static_cast<std::size_t>(high - 1)] == store_.waste()) --high;
   while (low < high) {
     const std::int64_t mid = (low + high) / 2;
     const auto m = static_cast<std::size_t>(mid);
-    if (std::pair(list.i[m], list.j[m]) < wanted) low = mid + 1;
-    else high = mid;
+    if (std::pair(list.i[m], list.j[m]) < wanted)
+      low = mid + 1;
+    else
+      high = mid;
   }
   const auto at = static_cast<std::size_t>(low);
   if (low == list.size() || std::pair(list.i[at], list.j[at]) != wanted) return {};
@@ -117,9 +131,11 @@ template <int Dim>
 void Lane<Dim>::place(std::int32_t a, std::int32_t b, const double* spring) {
   const Slot at = slot(a, b);
   if (at.list == nullptr) return;  // no longer a candidate, so out of touch
-  if (at.list == &bands_[Right].across && bands_[Right].returns) return;  // kept by the right-hand side
+  if (at.list == &bands_[Right].across && bands_[Right].returns)
+    return;  // kept by the right-hand side
   const bool swapped = at.list->i[static_cast<std::size_t>(at.k)] != a;
-  for (int c = 0; c < L::kSprings; ++c) at.list->template springs<Dim>(at.k)[c * kBatch] = Dim == 3 && swapped ? -spring[c] : spring[c];
+  for (int c = 0; c < L::kSprings; ++c)
+    at.list->template springs<Dim>(at.k)[c * kBatch] = Dim == 3 && swapped ? -spring[c] : spring[c];
 }
 
 template <int Dim>
@@ -129,7 +145,8 @@ void Lane<Dim>::carry_owned() {
     for (std::int64_t k = 0; k < list.size(); ++k) {
       const auto at = static_cast<std::size_t>(k);
       if (!list.template has_spring<Dim>(k)) continue;
-      const std::int32_t a = new_row_[static_cast<std::size_t>(list.i[at])], b = new_row_[static_cast<std::size_t>(list.j[at])];
+      const std::int32_t a = new_row_[static_cast<std::size_t>(list.i[at])],
+                         b = new_row_[static_cast<std::size_t>(list.j[at])];
       if (a < 0 || b < 0) continue;
       for (int c = 0; c < L::kSprings; ++c) spring[c] = list.template springs<Dim>(k)[c * kBatch];
       place(a, b, spring);
@@ -151,12 +168,16 @@ void Lane<Dim>::restore_history() {
 
   walls_.search(store_, world_->wall_specs, world_->walls, world_->skin);
   for (WallContact<Dim>& c : old_walls_) c.row = new_row_[static_cast<std::size_t>(c.row)];
-  std::sort(old_walls_.begin(), old_walls_.end(), [](const auto& p, const auto& q) { return std::pair(p.row, p.wall) < std::pair(q.row, q.wall); });
+  std::sort(old_walls_.begin(), old_walls_.end(), [](const auto& p, const auto& q) {
+    return std::pair(p.row, p.wall) < std::pair(q.row, q.wall);
+  });
   auto old = old_walls_.begin();
   for (WallContact<Dim>& c : walls_.list()) {
-    while (old != old_walls_.end() && std::pair(old->row, old->wall) < std::pair(c.row, c.wall)) ++old;
+    while (old != old_walls_.end() && std::pair(old->row, old->wall) < std::pair(c.row, c.wall))
+      ++old;
     if (old == old_walls_.end()) break;
-    if (old->row == c.row && old->wall == c.wall) std::copy_n(old->spring, int{L::kSprings}, c.spring);
+    if (old->row == c.row && old->wall == c.wall)
+      std::copy_n(old->spring, int{L::kSprings}, c.spring);
   }
   old_walls_.clear();
 }

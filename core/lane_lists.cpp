@@ -22,7 +22,8 @@ void carry_same_rows(const PairList& from, PairList& to) {
     if (p == from.size()) return;
     const auto b = static_cast<std::size_t>(p);
     if (from.i[b] != to.i[a] || from.j[b] != to.j[a]) continue;
-    for (int c = 0; c < Layout<Dim>::kSprings; ++c) to.template springs<Dim>(k)[c * kBatch] = from.template springs<Dim>(p)[c * kBatch];
+    for (int c = 0; c < Layout<Dim>::kSprings; ++c)
+      to.template springs<Dim>(k)[c * kBatch] = from.template springs<Dim>(p)[c * kBatch];
   }
 }
 
@@ -32,7 +33,8 @@ template <int Dim>
 void Lane<Dim>::list_bonded() {
   bonded_.clear();
   for (std::size_t b = 0; b < bonds_.bonds().size(); ++b) {
-    if (!bonds_.is_broken(static_cast<std::int32_t>(b))) bonded_.add(bonds_.bonds()[b].id_a, bonds_.bonds()[b].id_b);
+    if (!bonds_.is_broken(static_cast<std::int32_t>(b)))
+      bonded_.add(bonds_.bonds()[b].id_a, bonds_.bonds()[b].id_b);
   }
   bonded_.finish();
 }
@@ -52,9 +54,11 @@ void Lane<Dim>::find_owned() {
   const bool held_low = bands_[Left].exists && bands_[Left].ghosts_first;
   const bool held_high = bands_[Right].exists && bands_[Right].ghosts_first;
   const std::int32_t low = held_low ? bands_[Left].rows.end : 0;
-  const std::int32_t high = held_high ? std::max(low, cells_.first_row(slab_end_ - 2, slab_size)) : n;
+  const std::int32_t high =
+      held_high ? std::max(low, cells_.first_row(slab_end_ - 2, slab_size)) : n;
 
-  const ContactSearch<Dim> search(world_->grid, store_, {world_->skin, world_->search, &world_->laws, &bonded_});
+  const ContactSearch<Dim> search(world_->grid, store_,
+                                  {world_->skin, world_->search, &world_->laws, &bonded_});
   const Rows parts[kNumLists] = {{0, low}, {low, high}, {high, n}};
   row_begin_.resize(static_cast<std::size_t>(n) + 1);
   for (int l = 0; l < kNumLists; ++l) {
@@ -90,7 +94,8 @@ void Lane<Dim>::cut_blocks() {
     for (std::int64_t k = 0; k < list.size(); k += kBlockPairs) {
       const std::int64_t end = std::min(k + kBlockPairs, list.size());
       // Rows before the next pair's first row are complete; the waste row pads, and comes last.
-      const std::int32_t next = end < list.size() ? std::min(list.i[static_cast<std::size_t>(end)], last) : first;
+      const std::int32_t next =
+          end < list.size() ? std::min(list.i[static_cast<std::size_t>(end)], last) : first;
       Block& block = blocks_.emplace_back();
       block.list = l, block.begin = k, block.end = end, block.final_row = next;
     }
@@ -102,7 +107,8 @@ void Lane<Dim>::cut_blocks() {
     if (block->end == list.size()) block->final_row = std::max(first, done);
     done = std::min(done, std::min(list.i[static_cast<std::size_t>(block->begin)], last));
   }
-  if (blocks_.empty() || blocks_.back().final_row < last) blocks_.emplace_back(), blocks_.back().list = Owned, blocks_.back().final_row = last;
+  if (blocks_.empty() || blocks_.back().final_row < last)
+    blocks_.emplace_back(), blocks_.back().list = Owned, blocks_.back().final_row = last;
   for (Block& block : blocks_) block.final_row = std::clamp(block.final_row, first, last);
   chunks_ = {0, static_cast<int>(blocks_.size())};
   if (packs()) prepare_packing();
@@ -115,7 +121,8 @@ void Lane<Dim>::prepare_packing() {
   list.packed_j.resize(list.i.size());
   list.packed_code.resize(list.i.size());
   list.mask.resize(list.i.size() / kBatch);
-  // While a block is worked on, the rows that the next one meets first are on their way to the cache.
+  // While a block is worked on, the rows that the next one meets first are on their way to the
+  // cache.
   std::int32_t met = 0, to_come = 0;
   Block* before = nullptr;
   for (Block& block : blocks_) {
@@ -134,7 +141,8 @@ template <int Dim>
 void Lane<Dim>::cut_chunks(std::int64_t chunk_pairs) {
   const auto touches_left = [this](const Block& block) {
     const PairList& list = lists_[static_cast<std::size_t>(block.list)];
-    return block.begin < block.end && list.i[static_cast<std::size_t>(block.begin)] < bands_[Left].rows.end;
+    return block.begin < block.end &&
+           list.i[static_cast<std::size_t>(block.begin)] < bands_[Left].rows.end;
   };
   chunks_ = {0};
   std::int64_t pairs = 0;
@@ -150,7 +158,9 @@ void Lane<Dim>::cut_chunks(std::int64_t chunk_pairs) {
   std::int32_t row = bands_[Left].rows.end;
   for (Block& block : blocks_) {
     const auto& walls = walls_.list();
-    const auto wall = std::lower_bound(walls.begin(), walls.end(), row, [](const WallContact<Dim>& c, std::int32_t r) { return c.row < r; });
+    const auto wall =
+        std::lower_bound(walls.begin(), walls.end(), row,
+                         [](const WallContact<Dim>& c, std::int32_t r) { return c.row < r; });
     block.has_extras = !bonds_.empty() || (wall != walls.end() && wall->row < block.final_row);
     row = std::max(row, block.final_row);
   }
@@ -168,10 +178,13 @@ void Lane<Dim>::list_across(Side side) {
   own.first_key = own.slab_begin * slab_size;
   const auto from = cells_.start.begin() + (own.slab_begin - slab_begin_) * slab_size;
   own.start.assign(from, from + slab_size + 1);
-  const ContactSearch<Dim> search(world_->grid, store_, {world_->skin, world_->search, &world_->laws, &bonded_});
+  const ContactSearch<Dim> search(world_->grid, store_,
+                                  {world_->skin, world_->search, &world_->laws, &bonded_});
   const int towards = side == Left ? -1 : 1;  // from owned to ghost
-  if (band.ghosts_first) search.across(band.ghost_cells, own, -towards, band.across);
-  else search.across(own, band.ghost_cells, towards, band.across);
+  if (band.ghosts_first)
+    search.across(band.ghost_cells, own, -towards, band.across);
+  else
+    search.across(own, band.ghost_cells, towards, band.across);
   band.across.pad(store_.waste());
   band.across.template reset_springs<Dim>();
   band.across.result.resize(band.returns ? band.across.i.size() * L::kForce : 0);
@@ -184,7 +197,8 @@ void Lane<Dim>::research_owned() {
   find_owned();
   cut_chunks(std::int64_t{1} << 60);
   for (int l = 0; l < kNumLists; ++l) {
-    carry_same_rows<Dim>(old_lists_[static_cast<std::size_t>(l)], lists_[static_cast<std::size_t>(l)]);
+    carry_same_rows<Dim>(old_lists_[static_cast<std::size_t>(l)],
+                         lists_[static_cast<std::size_t>(l)]);
   }
 }
 
@@ -207,7 +221,8 @@ std::int64_t Lane<Dim>::num_pairs() const {
 template <int Dim>
 std::size_t Lane<Dim>::bytes() const {
   std::size_t total = store_.bytes() + spare_.bytes() + bonds_.bytes() + 8 * row_begin_.capacity() +
-                      4 * (cells_.start.capacity() + new_row_.capacity()) + blocks_.capacity() * sizeof(Block) +
+                      4 * (cells_.start.capacity() + new_row_.capacity()) +
+                      blocks_.capacity() * sizeof(Block) +
                       walls_.list().capacity() * sizeof(WallContact<Dim>);
   for (const auto* lists : {&lists_, &old_lists_}) {
     for (const PairList& list : *lists) total += list.bytes();

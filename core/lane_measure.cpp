@@ -74,10 +74,14 @@ void measure_wall_contacts(const Lane<Dim>& lane, Measures& m) {
   for (const WallContact<Dim>& c : lane.wall_contacts().list()) {
     double to_wall[3] = {};
     const auto w = static_cast<std::size_t>(c.wall);
-    const double overlap = store.radius(c.row) - WallContacts<Dim>::nearest(world.wall_specs[w], world.walls[w], store.x(c.row), to_wall);
+    const double overlap =
+        store.radius(c.row) -
+        WallContacts<Dim>::nearest(world.wall_specs[w], world.walls[w], store.x(c.row), to_wall);
     if (overlap <= 0.0) continue;
-    const double* law = world.laws.view().rows +
-                        LawView::kRow * world.laws.code(world.wall_specs[w].material, store.type[static_cast<std::size_t>(c.row)]);
+    const double* law =
+        world.laws.view().rows +
+        LawView::kRow * world.laws.code(world.wall_specs[w].material,
+                                        store.type[static_cast<std::size_t>(c.row)]);
     double s2 = 0.0;
     for (const double s : c.spring) s2 += s * s;
     m.elastic.add(0.5 * (law[LawView::Kn] * overlap * overlap + law[LawView::Kt] * s2));
@@ -93,7 +97,8 @@ Measures Lane<Dim>::measure(const Vec3& gravity) {
   Measures m;
   measure_motion(store_, gravity, m);
   for (const PairList& list : lists_) measure_pairs(*this, list, m);
-  if (bands_[Left].exists) measure_pairs(*this, bands_[Left].across, m);  // a pair across a cut counts on its right
+  if (bands_[Left].exists)
+    measure_pairs(*this, bands_[Left].across, m);  // a pair across a cut counts on its right
   measure_wall_contacts(*this, m);
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.bonds().size()); ++b) {
     // A bond across a cut counts on its right, too.
@@ -132,7 +137,8 @@ Travel Lane<Dim>::travel() const {
     // Written so that NaN wins.
     if (!(d2 <= t.distance2)) t.distance2 = d2;
     if (!(v2 <= t.speed2)) t.speed2 = v2;
-    if (!world_->grid.contains(x)) t.outside = std::max(t.outside, store_.id[static_cast<std::size_t>(i)]);
+    if (!world_->grid.contains(x))
+      t.outside = std::max(t.outside, store_.id[static_cast<std::size_t>(i)]);
   }
   return t;
 }
@@ -160,8 +166,8 @@ std::uint64_t Lane<Dim>::digest() const {
   for (std::int32_t i = 0; i < store_.num_owned; ++i) {
     double omega[3];
     for (int c = 0; c < kSpins<Dim>; ++c) omega[c] = store_.u(i)[c] / store_.radius(i);
-    sum += particle_digest(store_.id[static_cast<std::size_t>(i)], {store_.x(i), std::size_t{Dim}}, {store_.v(i), std::size_t{Dim}},
-                           {omega, std::size_t{kSpins<Dim>}});
+    sum += particle_digest(store_.id[static_cast<std::size_t>(i)], {store_.x(i), std::size_t{Dim}},
+                           {store_.v(i), std::size_t{Dim}}, {omega, std::size_t{kSpins<Dim>}});
   }
   return sum;
 }

@@ -103,7 +103,8 @@ void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byt
     world_->grid.wrap(store_.x(i));
     const auto at = static_cast<std::size_t>(i);
     store_.key[at] = world_->grid.key(store_.x(i));
-    goes_[at] = static_cast<std::int8_t>(direction_of(static_cast<int>(store_.key[at] / world_->grid.slab_size())));
+    goes_[at] = static_cast<std::int8_t>(
+        direction_of(static_cast<int>(store_.key[at] / world_->grid.slab_size())));
     if (goes_[at] == 0) continue;
     auto& out = leavers[static_cast<std::size_t>(goes_[at] - 1)];
     number[at] = static_cast<std::int32_t>(out.size());
@@ -129,7 +130,8 @@ void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byt
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.bonds().size()); ++b) {
     if (bonds_.is_broken(b)) continue;
     const auto [left, right] = bond_leaves(b);
-    const BondRecord<Dim> record{bonds_.bonds()[static_cast<std::size_t>(b)], static_cast<std::uint8_t>(computes_bond(b))};
+    const BondRecord<Dim> record{bonds_.bonds()[static_cast<std::size_t>(b)],
+                                 static_cast<std::uint8_t>(computes_bond(b))};
     if (left) bonds[0].push_back(record);
     if (right) bonds[1].push_back(record);
   }
@@ -171,11 +173,13 @@ void Lane<Dim>::absorb(std::span<const std::byte> message) {
     write_row(store_, row, particles[p]);
     const int slab = static_cast<int>(particles[p].key / world_->grid.slab_size());
     if (slab < slab_begin_ || slab >= slab_end_) {
-      throw RunError("particle " + std::to_string(particles[p].id) + " jumped over a whole strip: the time step is too long");
+      throw RunError("particle " + std::to_string(particles[p].id) +
+                     " jumped over a whole strip: the time step is too long");
     }
     if (particles[p].has_external == 0) continue;
     store_.external.resize(goes_.size() * L::kForce, 0.0);
-    std::copy_n(particles[p].external, int{L::kForce}, store_.external.data() + static_cast<std::size_t>(row) * L::kForce);
+    std::copy_n(particles[p].external, int{L::kForce},
+                store_.external.data() + static_cast<std::size_t>(row) * L::kForce);
   }
   for (LooseContact& c : contacts) {
     c.handle += first;
@@ -197,7 +201,8 @@ void Lane<Dim>::gather_rows(const std::vector<std::int32_t>& source) {
   spare_.motion.resize(static_cast<std::size_t>(n + 2) * L::kMotion);
   spare_.spin.resize(static_cast<std::size_t>(n + 2) * L::kSpin);
   for (auto* column : {&spare_.id, &spare_.key}) column->resize(static_cast<std::size_t>(n + 2));
-  for (auto* column : {&spare_.type, &spare_.flags}) column->resize(static_cast<std::size_t>(n + 2));
+  for (auto* column : {&spare_.type, &spare_.flags})
+    column->resize(static_cast<std::size_t>(n + 2));
   spare_.external.resize(store_.external.empty() ? 0 : static_cast<std::size_t>(n) * L::kForce);
   store_.external.resize(store_.external.empty() ? 0 : goes_.size() * L::kForce, 0.0);
   for (std::int32_t i = 0; i < n; ++i) {
@@ -210,7 +215,8 @@ void Lane<Dim>::gather_rows(const std::vector<std::int32_t>& source) {
     spare_.type[to] = store_.type[at];
     spare_.flags[to] = store_.flags[at];
     if (!store_.external.empty()) {
-      std::copy_n(store_.external.data() + at * L::kForce, int{L::kForce}, spare_.external.data() + to * L::kForce);
+      std::copy_n(store_.external.data() + at * L::kForce, int{L::kForce},
+                  spare_.external.data() + to * L::kForce);
     }
   }
   std::swap(store_.motion, spare_.motion);
@@ -228,7 +234,8 @@ template <int Dim>
 void Lane<Dim>::order() {
   // Counting sort by cell, then by id within a cell.
   const std::int64_t first_key = slab_begin_ * world_->grid.slab_size();
-  const auto num_cells = static_cast<std::size_t>((slab_end_ - slab_begin_) * world_->grid.slab_size());
+  const auto num_cells =
+      static_cast<std::size_t>((slab_end_ - slab_begin_) * world_->grid.slab_size());
   std::vector<std::int32_t> start(num_cells + 1, 0);
   std::int32_t stays = 0;
   for (std::size_t row = 0; row < goes_.size(); ++row) {
@@ -243,18 +250,24 @@ void Lane<Dim>::order() {
     if (goes_[row] != 0) continue;
     const auto cell = static_cast<std::size_t>(store_.key[row] - first_key);
     std::int32_t at = next[cell]++;
-    for (; at > start[cell] && store_.id[static_cast<std::size_t>(source[static_cast<std::size_t>(at - 1)])] > store_.id[row]; --at) {
+    for (; at > start[cell] &&
+           store_.id[static_cast<std::size_t>(source[static_cast<std::size_t>(at - 1)])] >
+               store_.id[row];
+         --at) {
       source[static_cast<std::size_t>(at)] = source[static_cast<std::size_t>(at - 1)];
     }
     source[static_cast<std::size_t>(at)] = static_cast<std::int32_t>(row);
   }
   new_row_.assign(goes_.size(), -1);
-  for (std::int32_t i = 0; i < stays; ++i) new_row_[static_cast<std::size_t>(source[static_cast<std::size_t>(i)])] = i;
+  for (std::int32_t i = 0; i < stays; ++i)
+    new_row_[static_cast<std::size_t>(source[static_cast<std::size_t>(i)])] = i;
   gather_rows(source);
   store_.resize_for_ghosts();
   cells_.index(world_->grid, store_, {0, stays}, slab_begin_, slab_end_);
   store_.reference.resize(static_cast<std::size_t>(stays) * Dim);
-  for (std::int32_t i = 0; i < stays; ++i) std::copy_n(store_.x(i), Dim, store_.reference.data() + std::size_t{Dim} * static_cast<std::size_t>(i));
+  for (std::int32_t i = 0; i < stays; ++i)
+    std::copy_n(store_.x(i), Dim,
+                store_.reference.data() + std::size_t{Dim} * static_cast<std::size_t>(i));
   list_bonded();
 }
 
@@ -262,7 +275,8 @@ template <int Dim>
 void Lane<Dim>::pack_ghosts(Side side, std::vector<std::byte>& message) const {
   const std::int64_t slab_size = world_->grid.slab_size();
   const std::int32_t begin = side == Left ? 0 : cells_.first_row(slab_end_ - 1, slab_size);
-  const std::int32_t end = side == Left ? cells_.first_row(slab_begin_ + 1, slab_size) : store_.num_owned;
+  const std::int32_t end =
+      side == Left ? cells_.first_row(slab_begin_ + 1, slab_size) : store_.num_owned;
   std::vector<ParticleRecord<Dim>> records;
   for (std::int32_t i = begin; i < end; ++i) records.push_back(record_of(store_, i));
   message.clear();
@@ -286,7 +300,8 @@ void Lane<Dim>::take_ghosts(std::span<const std::byte> left, std::span<const std
     std::int32_t row = store_.ghost_begin(side);
     const std::int32_t begin = row;
     for (const auto& record : ghosts[side]) write_row(store_, row++, record);
-    const int slab = side == Left ? (slab_begin_ - 1 + num_slabs) % num_slabs : slab_end_ % num_slabs;
+    const int slab =
+        side == Left ? (slab_begin_ - 1 + num_slabs) % num_slabs : slab_end_ % num_slabs;
     bands_[side].ghost_cells.index(world_->grid, store_, {begin, row}, slab, slab + 1);
     const Stopwatch watch(search_seconds_.rebuild);
     list_across(side);

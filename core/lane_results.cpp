@@ -3,10 +3,11 @@
 #include <barchan/core/error.hpp>
 #include <barchan/core/lane.hpp>
 
-// The published exchange: the band at a right cut goes to the right neighbour, which computes the forces of each
-// contact and sends them back.
+// The published exchange: the band at a right cut goes to the right neighbour, which computes the
+// forces of each contact and sends them back.
 //
-//   | number of contacts | force records, the ghost's number in an unused slot … | bonds of the cut … |
+//   | number of contacts | force records, the ghost's number in an unused slot … | bonds of the cut
+//   … |
 
 namespace barchan {
 namespace {
@@ -41,7 +42,8 @@ std::vector<double> Lane<Dim>::results() const {
     const auto at = static_cast<std::size_t>(k);
     const double* f = band.across.result.data() + at * L::kForce;
     if (is_zero<Dim>(f)) continue;
-    const std::int32_t ghost = store_.is_owned(band.across.i[at]) ? band.across.j[at] : band.across.i[at];
+    const std::int32_t ghost =
+        store_.is_owned(band.across.i[at]) ? band.across.j[at] : band.across.i[at];
     out[0] += 1.0;
     out.insert(out.end(), f, f + L::kForce);
     out[out.size() - L::kForce + kNumberSlot] = ghost - ghosts;
@@ -53,17 +55,22 @@ std::vector<double> Lane<Dim>::results() const {
 template <int Dim>
 void Lane<Dim>::finish_right_band(std::span<const double> results) {
   const Band& band = bands_[Right];
-  const auto num_bonds = static_cast<std::size_t>(bonds_.size(BondSet<Dim>::Right)) * BondSet<Dim>::kExported;
-  const std::size_t expected = results.empty() ? 0 : 1 + static_cast<std::size_t>(results[0]) * L::kForce + num_bonds;
+  const auto num_bonds =
+      static_cast<std::size_t>(bonds_.size(BondSet<Dim>::Right)) * BondSet<Dim>::kExported;
+  const std::size_t expected =
+      results.empty() ? 0 : 1 + static_cast<std::size_t>(results[0]) * L::kForce + num_bonds;
   if (results.empty() || results.size() != expected) {
-    throw RunError("a results message has " + std::to_string(results.size()) + " numbers instead of " + std::to_string(expected));
+    throw RunError("a results message has " + std::to_string(results.size()) +
+                   " numbers instead of " + std::to_string(expected));
   }
   const double* f = results.data() + 1;
   for (auto n = static_cast<std::int64_t>(results[0]); n > 0; --n, f += L::kForce) {
     const std::int32_t own = band.rows.begin + static_cast<std::int32_t>(f[kNumberSlot]);
-    if (own >= band.rows.end) throw RunError("a results message names a particle that is not in the band");
+    if (own >= band.rows.end)
+      throw RunError("a results message names a particle that is not in the band");
     double* row = store_.f(own);
-    // The force is on the lower particle of the pair, and so is this one unless the ghosts come first.
+    // The force is on the lower particle of the pair, and so is this one unless the ghosts come
+    // first.
     for (int c = 0; c < Dim; ++c) row[c] = band.ghosts_first ? row[c] - f[c] : row[c] + f[c];
     for (int c = L::kTorque; c < L::kTorque + kSpins<Dim>; ++c) row[c] += f[c];
   }

@@ -10,8 +10,10 @@ namespace {
 template <int Dim>
 double mass_of(const ParticleData& p) {
   const double r = p.radius;
-  if constexpr (Dim == 2) return p.density * std::numbers::pi * r * r;
-  else return p.density * (4.0 / 3.0) * std::numbers::pi * r * r * r;
+  if constexpr (Dim == 2)
+    return p.density * std::numbers::pi * r * r;
+  else
+    return p.density * (4.0 / 3.0) * std::numbers::pi * r * r * r;
 }
 
 }  // namespace
@@ -39,12 +41,14 @@ void Lane<Dim>::seed(int slab_begin, int slab_end, std::span<const ParticleData>
     x[L::kRadius] = p.radius;
     x[L::kInverseMass] = p.fixed ? 0.0 : 1.0 / mass_of<Dim>(p);
     if constexpr (Dim == 3) std::fill_n(store_.u(i), 4, 0.0);
-    for (int c = 0; c < kSpins<Dim>; ++c) store_.u(i)[c] = p.fixed ? 0.0 : p.radius * p.omega[Dim == 2 ? 2 : c];
+    for (int c = 0; c < kSpins<Dim>; ++c)
+      store_.u(i)[c] = p.fixed ? 0.0 : p.radius * p.omega[Dim == 2 ? 2 : c];
     world_->grid.wrap(x);
     store_.id[at] = p.id;
     store_.key[at] = world_->grid.key(x);
     store_.type[at] = static_cast<std::uint8_t>(p.type);
-    store_.flags[at] = static_cast<std::uint8_t>((p.fixed ? Store::kFixed : 0) | (is_bonded[at] != 0 ? Store::kBonded : 0));
+    store_.flags[at] = static_cast<std::uint8_t>((p.fixed ? Store::kFixed : 0) |
+                                                 (is_bonded[at] != 0 ? Store::kBonded : 0));
   }
   for (std::size_t b = 0; b < bonds.size(); ++b) {
     Bond<Dim> bond;
@@ -56,7 +60,9 @@ void Lane<Dim>::seed(int slab_begin, int slab_end, std::span<const ParticleData>
   }
 }
 
-template void Lane<2>::seed(int, int, std::span<const ParticleData>, std::span<const BondData>, std::span<const double>, std::span<const char>);
-template void Lane<3>::seed(int, int, std::span<const ParticleData>, std::span<const BondData>, std::span<const double>, std::span<const char>);
+template void Lane<2>::seed(int, int, std::span<const ParticleData>, std::span<const BondData>,
+                            std::span<const double>, std::span<const char>);
+template void Lane<3>::seed(int, int, std::span<const ParticleData>, std::span<const BondData>,
+                            std::span<const double>, std::span<const char>);
 
 }  // namespace barchan

@@ -8,8 +8,11 @@
 namespace barchan {
 namespace {
 
-/// Time over which springs stretch: in the first step, known by its half kick, nothing has moved yet.
-double spring_step(const StepFrame& frame, double dt) { return frame.kick < dt ? 0.0 : dt; }
+/// Time over which springs stretch: in the first step, known by its half kick, nothing has moved
+/// yet.
+double spring_step(const StepFrame& frame, double dt) {
+  return frame.kick < dt ? 0.0 : dt;
+}
 
 }  // namespace
 
@@ -88,22 +91,33 @@ void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extra
   if (has_extras || !store_.external.empty()) {
     bonds_.add_to_rows(store_, begin, end);
     const double dt = spring_step(frame_, world_->dt);
-    walls_.add_to_rows(store_, {world_->wall_specs, world_->walls, &world_->laws, dt}, wall_sums_, begin, end);
+    walls_.add_to_rows(store_, {world_->wall_specs, world_->walls, &world_->laws, dt}, wall_sums_,
+                       begin, end);
     if (!store_.external.empty()) {
-      const auto from = static_cast<std::size_t>(begin) * L::kForce, to = static_cast<std::size_t>(end) * L::kForce;
+      const auto from = static_cast<std::size_t>(begin) * L::kForce,
+                 to = static_cast<std::size_t>(end) * L::kForce;
       for (std::size_t c = from; c < to; ++c) store_.force[c] += store_.external[c];
     }
   }
-  RowJob rows{store_.motion.data(), store_.spin.data(), store_.force.data(), begin, end, frame_.kick, world_->dt,
-              {frame_.gravity[0], frame_.gravity[1], frame_.gravity[2]}, frame_.local_damping};
+  RowJob rows{store_.motion.data(),
+              store_.spin.data(),
+              store_.force.data(),
+              begin,
+              end,
+              frame_.kick,
+              world_->dt,
+              {frame_.gravity[0], frame_.gravity[1], frame_.gravity[2]},
+              frame_.local_damping};
   (frame_.local_damping != 0.0 ? world_->kernels.rows_damped : world_->kernels.rows)(rows);
 }
 
 template <int Dim>
 void Lane<Dim>::unpack_halo(Side side, std::span<const std::byte> message) {
-  const std::int32_t begin = store_.ghost_begin(side), n = store_.num_ghosts[static_cast<std::size_t>(side)];
+  const std::int32_t begin = store_.ghost_begin(side),
+                     n = store_.num_ghosts[static_cast<std::size_t>(side)];
   if (message.size() != static_cast<std::size_t>(n) * L::kHalo * sizeof(double)) {
-    throw RunError("a halo message has " + std::to_string(message.size()) + " bytes for " + std::to_string(n) + " ghosts");
+    throw RunError("a halo message has " + std::to_string(message.size()) + " bytes for " +
+                   std::to_string(n) + " ghosts");
   }
   const std::byte* from = message.data();
   const auto take = [&from](double* to, int count) {
@@ -142,9 +156,11 @@ template <int Dim>
 void Lane<Dim>::finish_band(Side side) {
   Band& band = bands_[side];
   if (world_->search == ContactSearchKind::AllPairs) research_across(side);
-  // Bonds come before contacts here too, as in begin_step: a pair whose bond breaks is in contact in the same step.
+  // Bonds come before contacts here too, as in begin_step: a pair whose bond breaks is in contact
+  // in the same step.
   if (!bonds_.empty()) compute_bonds(side == Left ? BondSet<Dim>::Left : BondSet<Dim>::Right);
-  (band.across.result.empty() ? world_->kernels.pairs : world_->kernels.pairs_kept)(job(band.across));
+  (band.across.result.empty() ? world_->kernels.pairs
+                              : world_->kernels.pairs_kept)(job(band.across));
   if (band.ghosts_first) replay(band.rows);
   finish_rows(band.rows.begin, band.rows.end, true);
 }
@@ -171,7 +187,8 @@ void Lane<Dim>::replay(Rows rows) {
 
 template <int Dim>
 void Lane<Dim>::compute_bonds(typename BondSet<Dim>::Group group) {
-  const auto broken = bonds_.compute(group, store_, world_->bond_laws, world_->grid.box(), spring_step(frame_, world_->dt));
+  const auto broken = bonds_.compute(group, store_, world_->bond_laws, world_->grid.box(),
+                                     spring_step(frame_, world_->dt));
   for (const std::int32_t bond : broken) unbind(bond);
   if (!broken.empty()) {
     list_bonded();
@@ -184,7 +201,8 @@ void Lane<Dim>::unbind(std::int32_t bond) {
   const std::int32_t a = bonds_.end_a(bond), b = bonds_.end_b(bond);
   const Slot at = slot(a, b);
   if (at.list == nullptr) return;  // too far apart to be candidates
-  const auto law = world_->laws.code(store_.type[static_cast<std::size_t>(a)], store_.type[static_cast<std::size_t>(b)]);
+  const auto law = world_->laws.code(store_.type[static_cast<std::size_t>(a)],
+                                     store_.type[static_cast<std::size_t>(b)]);
   at.list->code[static_cast<std::size_t>(at.k)] = law;
 }
 

@@ -3,9 +3,9 @@
 
 #include <barchan/core/lane.hpp>
 
-// Where many candidates do not touch, a block of the owned list works on its touching pairs alone: a narrow phase
-// tells which they are, and pairs, laws and springs are packed to the front of the block. As long as the same pairs
-// touch, nothing is moved.
+// Where many candidates do not touch, a block of the owned list works on its touching pairs alone:
+// a narrow phase tells which they are, and pairs, laws and springs are packed to the front of the
+// block. As long as the same pairs touch, nothing is moved.
 //
 //   candidates   | a b c d e f g h | …        springs, unpacked   | a – c – – f g – |
 //   mask         | 1 0 1 0 0 1 1 0 |          springs, packed     | a c f g | …
@@ -27,7 +27,9 @@ void clear_spring(double* to, std::int64_t a) {
   for (int c = 0; c < Layout<Dim>::kSprings; ++c) t[c * kBatch] = 0.0;
 }
 
-bool has_bit(const std::uint8_t* masks, std::int64_t k) { return (masks[k / 8] >> (k % 8) & 1) != 0; }
+bool has_bit(const std::uint8_t* masks, std::int64_t k) {
+  return (masks[k / 8] >> (k % 8) & 1) != 0;
+}
 
 }  // namespace
 
@@ -38,7 +40,8 @@ void Lane<Dim>::run_touching(Block& block, PairJob pairs) {
   world_->kernels.narrow(pairs, masks.data());
   const std::int64_t bytes = (block.end - block.begin) / kBatch;
   std::uint8_t* known = list.mask.data() + block.begin / kBatch;
-  if (!block.is_packed || std::memcmp(masks.data(), known, static_cast<std::size_t>(bytes)) != 0) pack(block, masks.data());
+  if (!block.is_packed || std::memcmp(masks.data(), known, static_cast<std::size_t>(bytes)) != 0)
+    pack(block, masks.data());
   pairs.i = pairs.row_i = list.packed_i.data();
   pairs.j = pairs.row_j = list.packed_j.data();
   pairs.code = list.packed_code.data();
@@ -57,12 +60,15 @@ void Lane<Dim>::pack(Block& block, const std::uint8_t* masks) {
   for (std::int64_t k = 0; k < size; ++k) {
     const bool was = !block.is_packed || has_bit(known, k);
     if (has_bit(masks, k)) {
-      const auto from = static_cast<std::size_t>(block.begin + k), to = static_cast<std::size_t>(block.begin + now);
+      const auto from = static_cast<std::size_t>(block.begin + k),
+                 to = static_cast<std::size_t>(block.begin + now);
       list.packed_i[to] = list.i[from];
       list.packed_j[to] = list.j[from];
       list.packed_code[to] = list.code[from];
-      if (was) copy_spring<Dim>(springs, block.is_packed ? old : k, packed, now);
-      else clear_spring<Dim>(packed, now);
+      if (was)
+        copy_spring<Dim>(springs, block.is_packed ? old : k, packed, now);
+      else
+        clear_spring<Dim>(packed, now);
       ++now;
     }
     old += was ? 1 : 0;
@@ -88,8 +94,10 @@ void Lane<Dim>::unpack_history() {
     const std::uint8_t* known = lists_[Owned].mask.data() + block.begin / kBatch;
     std::int64_t a = block.num_touching;
     for (std::int64_t k = block.end - block.begin - 1; k >= 0; --k) {
-      if (has_bit(known, k)) copy_spring<Dim>(springs, --a, springs, k);
-      else clear_spring<Dim>(springs, k);
+      if (has_bit(known, k))
+        copy_spring<Dim>(springs, --a, springs, k);
+      else
+        clear_spring<Dim>(springs, k);
     }
     block.is_packed = false;
   }

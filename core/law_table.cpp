@@ -19,14 +19,17 @@ LawTable::LawTable(const ContactTable& contacts) : num_materials_(contacts.num_m
     for (int b = a; b < n; ++b) {
       const auto code = static_cast<std::uint8_t>(size());
       add(contacts.at(a, b), cap);
-      codes_[static_cast<std::size_t>(a * n + b)] = codes_[static_cast<std::size_t>(b * n + a)] = code;
+      codes_[static_cast<std::size_t>(a * n + b)] = codes_[static_cast<std::size_t>(b * n + a)] =
+          code;
     }
   }
   columns_.assign(LawView::kNumFields * LawView::kColumn, 0.0);
-  // All laws have the same cap, and kernels take it lane by lane without a look-up: no lane may lack it.
+  // All laws have the same cap, and kernels take it lane by lane without a look-up: no lane may
+  // lack it.
   std::fill_n(columns_.begin() + LawView::Cap * LawView::kColumn, int{LawView::kColumn}, cap);
   for (int c = 0; c < size() && c < LawView::kColumn; ++c) {
-    for (int f = 0; f < LawView::kNumFields; ++f) columns_[f * LawView::kColumn + c] = rows_[c * LawView::kRow + f];
+    for (int f = 0; f < LawView::kNumFields; ++f)
+      columns_[f * LawView::kColumn + c] = rows_[c * LawView::kRow + f];
   }
 }
 
@@ -44,8 +47,10 @@ void LawTable::add(const ContactConstants& k, double cap) {
   row[LawView::CnCritical] = k.cn.critical;
   row[LawView::CtCritical] = k.ct.critical;
   // A null law keeps no spring: with mu = 0 every contact slides, and 0·inverse_kt = 0 clears it.
-  if (k.cn.critical > 0 || k.ct.critical > 0) damping_ = Damping::Critical;
-  else if (damping_ == Damping::Constant && (k.cn.rate > 0 || k.ct.rate > 0)) damping_ = Damping::Rate;
+  if (k.cn.critical > 0 || k.ct.critical > 0)
+    damping_ = Damping::Critical;
+  else if (damping_ == Damping::Constant && (k.cn.rate > 0 || k.ct.rate > 0))
+    damping_ = Damping::Rate;
   rows_.insert(rows_.end(), row, row + LawView::kRow);
 }
 

@@ -11,16 +11,19 @@ namespace barchan {
 /// Particles live in aligned records, so that a batch of pairs is aligned loads and a transpose:
 ///
 ///   2D  motion | x  y  r  –  | vx vy u  1/m |            force | fx fy ft – |
-///   3D  motion | x  y  z  r  | vx vy vz 1/m |  spin | ux uy uz – |  force | fx fy fz – | tx ty tz – |
+///   3D  motion | x  y  z  r  | vx vy vz 1/m |  spin | ux uy uz – |  force | fx fy fz – | tx ty tz
+///   – |
 ///
-/// u = r·omega is the surface speed [m/s]; ft, (tx ty tz) are torque / r [N]. A fixed particle has 1/m = 0.
+/// u = r·omega is the surface speed [m/s]; ft, (tx ty tz) are torque / r [N]. A fixed particle has
+/// 1/m = 0.
 template <int Dim>
 struct Layout;
 
 template <>
 struct Layout<2> {
   static constexpr int kMotion = 8, kRadius = 2, kVelocity = 4, kSurface = 6, kInverseMass = 7;
-  static constexpr int kSpin = 0;   ///< doubles per spin record: the surface speed is in the motion record
+  static constexpr int kSpin =
+      0;  ///< doubles per spin record: the surface speed is in the motion record
   static constexpr int kForce = 4, kTorque = 2;
   static constexpr int kSprings = 1;        ///< tangential spring components per contact
   static constexpr int kHalo = 5;           ///< doubles per halo record: x y vx vy u

@@ -52,27 +52,30 @@ struct ContactTable {
   bool no_tension = true;  ///< clamp the normal force at zero while particles part
 
   [[nodiscard]] const ContactConstants& at(int a, int b) const {
-    return constants[static_cast<std::size_t>(a) * static_cast<std::size_t>(num_materials) + static_cast<std::size_t>(b)];
+    return constants[static_cast<std::size_t>(a) * static_cast<std::size_t>(num_materials) +
+                     static_cast<std::size_t>(b)];
   }
 };
 
 /// Bond (linking element) after Potyondy & Cundall 2004, doi:10.1016/j.ijrmms.2004.09.011.
-/// Section: 2D a rectangle of height 2·radius_factor·min(r_i, r_j) and unit depth; 3D a disk of that radius.
+/// Section: 2D a rectangle of height 2·radius_factor·min(r_i, r_j) and unit depth; 3D a disk of
+/// that radius.
 struct BondLaw {
   std::string name;
   double young_modulus = 0.0;    ///< E [Pa]: axial stiffness E·A/L, bending stiffness E·I/L
   double stiffness_ratio = 2.5;  ///< normal over shear stiffness per area; twisting uses shear
   double radius_factor = 1.0;    ///< section radius over the smaller particle radius
   double damping_ratio = 0.0;    ///< of critical, on the relative motion of the two ends
-  double normal_stiffness = 0.0;  ///< per section area [Pa/m]; when > 0 it stands for young_modulus / L
+  double normal_stiffness =
+      0.0;  ///< per section area [Pa/m]; when > 0 it stands for young_modulus / L
   double tensile_strength = std::numeric_limits<double>::infinity();  ///< [Pa]
   double shear_strength = std::numeric_limits<double>::infinity();    ///< [Pa]
 };
 
 enum class WallKind { Plane, Plate };
 
-/// A plane fills the half-space behind its normal. A plate is a flat face of finite width around `point`
-/// (2D a segment, 3D a rectangle), touched at its nearest point from either side.
+/// A plane fills the half-space behind its normal. A plate is a flat face of finite width around
+/// `point` (2D a segment, 3D a rectangle), touched at its nearest point from either side.
 struct WallSpec {
   std::string name;
   WallKind kind = WallKind::Plane;
@@ -80,19 +83,21 @@ struct WallSpec {
   Vec3 point = Vec3::Zero();     ///< [m]
   Vec3 normal = Vec3::Zero();    ///< unit, towards the particles
   Vec3 velocity = Vec3::Zero();  ///< [m/s], given; for a loaded plate its start
-  double width = 0.0;            ///< plate: along the in-plane axis [m] (2D perpendicular to normal)
-  double depth = 0.0;            ///< plate in 3D: the other in-plane extent [m]
-  bool is_loaded = false;        ///< plate moved along its normal by load, contact forces and damping
-  double load = 0.0;             ///< service load q along the normal, towards the particles [N/m²] (2D: [N/m] of width per unit depth)
-  double mass = 0.0;             ///< of a loaded plate [kg]
-  double damping = 0.0;          ///< viscous, on a loaded plate [N·s/m]
-  int from_stage = 0;            ///< absent before this stage
+  double width = 0.0;      ///< plate: along the in-plane axis [m] (2D perpendicular to normal)
+  double depth = 0.0;      ///< plate in 3D: the other in-plane extent [m]
+  bool is_loaded = false;  ///< plate moved along its normal by load, contact forces and damping
+  double load = 0.0;  ///< service load q along the normal, towards the particles [N/m²] (2D: [N/m]
+                      ///< of width per unit depth)
+  double mass = 0.0;  ///< of a loaded plate [kg]
+  double damping = 0.0;  ///< viscous, on a loaded plate [N·s/m]
+  int from_stage = 0;    ///< absent before this stage
 };
 
 /// A stretch of the run; it ends by time or when the kinetic-energy ratio falls low enough.
 struct Stage {
   std::string name;
-  double local_damping = 0.0;  ///< Cundall's alpha: force reduced by alpha·|F|·sign(v), per component
+  double local_damping =
+      0.0;  ///< Cundall's alpha: force reduced by alpha·|F|·sign(v), per component
   double max_time = std::numeric_limits<double>::infinity();  ///< length of the stage [s]
   double kinetic_ratio = 0.0;  ///< end when kinetic over elastic energy falls below; 0 = never
 };

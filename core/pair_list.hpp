@@ -6,15 +6,17 @@
 
 namespace barchan {
 
-/// Candidate pairs in canonical order, with their law and history; whole batches, padded with waste rows.
+/// Candidate pairs in canonical order, with their law and history; whole batches, padded with waste
+/// rows.
 struct PairList {
-  AlignedVector<std::int32_t> i, j;  ///< lower and higher of each pair
-  AlignedVector<std::uint8_t> code;  ///< law of each pair
-  AlignedVector<double> spring;      ///< per batch of eight: component by component
+  AlignedVector<std::int32_t> i, j;          ///< lower and higher of each pair
+  AlignedVector<std::uint8_t> code;          ///< law of each pair
+  AlignedVector<double> spring;              ///< per batch of eight: component by component
   AlignedVector<std::int32_t> row_i, row_j;  ///< where forces go, if not to i and j
   AlignedVector<double> result;              ///< a force record each, if kept
 
-  // Touching pairs of each block, packed to its front (lane_touching.cpp); empty where every candidate is worked on.
+  // Touching pairs of each block, packed to its front (lane_touching.cpp); empty where every
+  // candidate is worked on.
   AlignedVector<std::int32_t> packed_i, packed_j;
   AlignedVector<std::uint8_t> packed_code, mask;
 
@@ -58,7 +60,9 @@ struct PairList {
     return s[0] != 0.0 || s[kBatch] != 0.0 || s[2 * kBatch] != 0.0;
   }
   [[nodiscard]] std::size_t bytes() const {
-    return 4 * (i.capacity() + j.capacity() + row_i.capacity() + row_j.capacity() + packed_i.capacity() + packed_j.capacity()) + code.capacity() + packed_code.capacity() + mask.capacity() +
+    return 4 * (i.capacity() + j.capacity() + row_i.capacity() + row_j.capacity() +
+                packed_i.capacity() + packed_j.capacity()) +
+           code.capacity() + packed_code.capacity() + mask.capacity() +
            8 * (spring.capacity() + result.capacity());
   }
 };

@@ -26,8 +26,8 @@ void ParticleStore<Dim>::resize_for_ghosts() {
 
 template <int Dim>
 std::size_t ParticleStore<Dim>::bytes() const {
-  return 8 * (motion.capacity() + spin.capacity() + force.capacity() + reference.capacity() + id.capacity() +
-              key.capacity() + external.capacity()) +
+  return 8 * (motion.capacity() + spin.capacity() + force.capacity() + reference.capacity() +
+              id.capacity() + key.capacity() + external.capacity()) +
          type.capacity() + flags.capacity();
 }
 

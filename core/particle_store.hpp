@@ -12,7 +12,8 @@ namespace barchan {
 ///
 ///   | owned 0 … n−1 | waste n, n+1 | left ghosts | right ghosts |
 ///
-/// The waste rows pad batches of pairs (they never touch: radius 0) and take forces that are kept for later.
+/// The waste rows pad batches of pairs (they never touch: radius 0) and take forces that are kept
+/// for later.
 template <int Dim>
 struct ParticleStore {
   using L = Layout<Dim>;
@@ -36,7 +37,9 @@ struct ParticleStore {
   [[nodiscard]] std::int32_t size() const { return num_owned + 2 + num_ghosts[0] + num_ghosts[1]; }
   [[nodiscard]] bool is_owned(std::int32_t i) const { return i < num_owned; }
 
-  [[nodiscard]] double* x(std::int32_t i) { return motion.data() + std::size_t{L::kMotion} * static_cast<std::size_t>(i); }
+  [[nodiscard]] double* x(std::int32_t i) {
+    return motion.data() + std::size_t{L::kMotion} * static_cast<std::size_t>(i);
+  }
   [[nodiscard]] const double* x(std::int32_t i) const {
     return motion.data() + std::size_t{L::kMotion} * static_cast<std::size_t>(i);
   }
@@ -47,8 +50,12 @@ struct ParticleStore {
     if constexpr (Dim == 2) return x(i) + L::kSurface;
     return spin.data() + std::size_t{4} * static_cast<std::size_t>(i);
   }
-  [[nodiscard]] const double* u(std::int32_t i) const { return const_cast<ParticleStore*>(this)->u(i); }
-  [[nodiscard]] double* f(std::int32_t i) { return force.data() + std::size_t{L::kForce} * static_cast<std::size_t>(i); }
+  [[nodiscard]] const double* u(std::int32_t i) const {
+    return const_cast<ParticleStore*>(this)->u(i);
+  }
+  [[nodiscard]] double* f(std::int32_t i) {
+    return force.data() + std::size_t{L::kForce} * static_cast<std::size_t>(i);
+  }
   [[nodiscard]] double radius(std::int32_t i) const { return x(i)[L::kRadius]; }
   [[nodiscard]] double inverse_mass(std::int32_t i) const { return x(i)[L::kInverseMass]; }
 

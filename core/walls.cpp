@@ -16,12 +16,15 @@ LawConstants<S> constants_of(const LawTable& laws, std::uint8_t code) {
 }
 
 template <int Dim>
-PairState<S, Dim> pair_with_wall(const ParticleStore<Dim>& s, std::int32_t row, const double* d, const Vec3& v) {
+PairState<S, Dim> pair_with_wall(const ParticleStore<Dim>& s, std::int32_t row, const double* d,
+                                 const Vec3& v) {
   const double *w = s.v(row), *u = s.u(row);
   if constexpr (Dim == 2) {
     return {d[0], d[1], s.radius(row), v[0] - w[0], v[1] - w[1], u[0], s.inverse_mass(row)};
   } else {
-    return {d[0], d[1], d[2], s.radius(row), v[0] - w[0], v[1] - w[1], v[2] - w[2], s.inverse_mass(row), u[0], u[1], u[2]};
+    return {d[0],        d[1],        d[2],        s.radius(row),
+            v[0] - w[0], v[1] - w[1], v[2] - w[2], s.inverse_mass(row),
+            u[0],        u[1],        u[2]};
   }
 }
 
@@ -29,20 +32,24 @@ template <int Dim, Damping D>
 PairForce<S, Dim> force_of(const LawConstants<S>& c, const PairState<S, Dim>& pair, double dt,
                            double (&spring)[Layout<Dim>::kSprings]) {
   PairForce<S, Dim> f{};
-  if constexpr (Dim == 2) respond<S, D>(c, pair, dt, spring[0], f);
-  else respond<S, D>(c, pair, dt, spring, f);
+  if constexpr (Dim == 2)
+    respond<S, D>(c, pair, dt, spring[0], f);
+  else
+    respond<S, D>(c, pair, dt, spring, f);
   return f;
 }
 
 template <int Dim>
-PairForce<S, Dim> respond_as(Damping damping, const LawConstants<S>& c, const PairState<S, Dim>& pair, double dt,
+PairForce<S, Dim> respond_as(Damping damping, const LawConstants<S>& c,
+                             const PairState<S, Dim>& pair, double dt,
                              double (&spring)[Layout<Dim>::kSprings]) {
   if (damping == Damping::Constant) return force_of<Dim, Damping::Constant>(c, pair, dt, spring);
   if (damping == Damping::Rate) return force_of<Dim, Damping::Rate>(c, pair, dt, spring);
   return force_of<Dim, Damping::Critical>(c, pair, dt, spring);
 }
 
-/// The second in-plane axis of a plate: z in 2D never matters; in 3D the one across `normal` and `along`.
+/// The second in-plane axis of a plate: z in 2D never matters; in 3D the one across `normal` and
+/// `along`.
 void in_plane_axes(const Vec3& n, Vec3& along, Vec3& across) {
   // The width runs along the coordinate axis least aligned with the normal, turned into the plane.
   int least = 0;
@@ -53,7 +60,8 @@ void in_plane_axes(const Vec3& n, Vec3& along, Vec3& across) {
   axis[least] = 1.0;
   along = axis - n[least] * n;
   along /= std::sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
-  across = Vec3(n[1] * along[2] - n[2] * along[1], n[2] * along[0] - n[0] * along[2], n[0] * along[1] - n[1] * along[0]);
+  across = Vec3(n[1] * along[2] - n[2] * along[1], n[2] * along[0] - n[0] * along[2],
+                n[0] * along[1] - n[1] * along[0]);
 }
 
 }  // namespace
@@ -68,7 +76,8 @@ void WallSums::add(const WallSums& other) {
 
 void WallSums::add_force(const WallState& state, const Vec3& at, const Vec3& f) {
   const Vec3 arm = at - state.point;
-  const double about[3] = {arm[1] * f[2] - arm[2] * f[1], arm[2] * f[0] - arm[0] * f[2], arm[0] * f[1] - arm[1] * f[0]};
+  const double about[3] = {arm[1] * f[2] - arm[2] * f[1], arm[2] * f[0] - arm[0] * f[2],
+                           arm[0] * f[1] - arm[1] * f[0]};
   for (int c = 0; c < 3; ++c) {
     force[c].add(f[c]);
     torque[c].add(about[c]);
@@ -76,7 +85,8 @@ void WallSums::add_force(const WallState& state, const Vec3& at, const Vec3& f) 
 }
 
 template <int Dim>
-double WallContacts<Dim>::nearest(const WallSpec& spec, const WallState& state, const double* x, double* to_wall) {
+double WallContacts<Dim>::nearest(const WallSpec& spec, const WallState& state, const double* x,
+                                  double* to_wall) {
   Vec3 d = state.point;
   for (int c = 0; c < Dim; ++c) d[c] -= x[c];
   const Vec3& n = spec.normal;
@@ -87,8 +97,10 @@ double WallContacts<Dim>::nearest(const WallSpec& spec, const WallState& state, 
     return height;
   }
   Vec3 along, across;
-  if constexpr (Dim == 2) along = Vec3(-n[1], n[0], 0.0), across = Vec3::Zero();
-  else in_plane_axes(n, along, across);
+  if constexpr (Dim == 2)
+    along = Vec3(-n[1], n[0], 0.0), across = Vec3::Zero();
+  else
+    in_plane_axes(n, along, across);
   const double a = d[0] * along[0] + d[1] * along[1] + d[2] * along[2];
   const double b = d[0] * across[0] + d[1] * across[1] + d[2] * across[2];
   const double beyond_a = a - std::clamp(a, -0.5 * spec.width, 0.5 * spec.width);
@@ -117,7 +129,8 @@ void WallContacts<Dim>::search(const ParticleStore<Dim>& store, std::span<const 
 }
 
 template <int Dim>
-typename WallContacts<Dim>::Push WallContacts<Dim>::push(const ParticleStore<Dim>& store, const Frame& frame,
+typename WallContacts<Dim>::Push WallContacts<Dim>::push(const ParticleStore<Dim>& store,
+                                                         const Frame& frame,
                                                          WallContact<Dim>& contact) {
   const auto w = static_cast<std::size_t>(contact.wall);
   const WallSpec& spec = frame.specs[w];
@@ -126,7 +139,8 @@ typename WallContacts<Dim>::Push WallContacts<Dim>::push(const ParticleStore<Dim
   const auto pair = pair_with_wall(store, contact.row, d, frame.states[w].velocity);
   const auto type = store.type[static_cast<std::size_t>(contact.row)];
   const auto law = constants_of(*frame.laws, frame.laws->code(spec.material, type));
-  Push p{respond_as(frame.laws->damping(), law, pair, frame.dt, contact.spring), Vec3::Zero(), Vec3::Zero()};
+  Push p{respond_as(frame.laws->damping(), law, pair, frame.dt, contact.spring), Vec3::Zero(),
+         Vec3::Zero()};
   for (int c = 0; c < Dim; ++c) p.at[c] = store.x(contact.row)[c] + d[c];
   p.on_wall[0] = -p.on_particle.fx;
   p.on_wall[1] = -p.on_particle.fy;
@@ -135,10 +149,12 @@ typename WallContacts<Dim>::Push WallContacts<Dim>::push(const ParticleStore<Dim
 }
 
 template <int Dim>
-void WallContacts<Dim>::add_to_rows(ParticleStore<Dim>& store, const Frame& frame, std::span<WallSums> sums,
-                                    std::int32_t begin, std::int32_t end) {
-  auto it = std::lower_bound(list_.begin(), list_.end(), begin,
-                             [](const WallContact<Dim>& c, std::int32_t row) { return c.row < row; });
+void WallContacts<Dim>::add_to_rows(ParticleStore<Dim>& store, const Frame& frame,
+                                    std::span<WallSums> sums, std::int32_t begin,
+                                    std::int32_t end) {
+  auto it =
+      std::lower_bound(list_.begin(), list_.end(), begin,
+                       [](const WallContact<Dim>& c, std::int32_t row) { return c.row < row; });
   for (; it != list_.end() && it->row < end; ++it) {
     const Push p = push(store, frame, *it);
     double* row = store.f(it->row);
@@ -161,10 +177,13 @@ void WallContacts<Dim>::add_to_rows(ParticleStore<Dim>& store, const Frame& fram
 }
 
 template <int Dim>
-void WallContacts<Dim>::measure(const ParticleStore<Dim>& store, const Frame& frame, std::span<WallSums> sums) const {
+void WallContacts<Dim>::measure(const ParticleStore<Dim>& store, const Frame& frame,
+                                std::span<WallSums> sums) const {
   for (WallContact<Dim> contact : list_) {
     const Push p = push(store, frame, contact);
-    if (!p.on_wall.isZero(0.0)) sums[static_cast<std::size_t>(contact.wall)].add_force(frame.states[static_cast<std::size_t>(contact.wall)], p.at, p.on_wall);
+    if (!p.on_wall.isZero(0.0))
+      sums[static_cast<std::size_t>(contact.wall)].add_force(
+          frame.states[static_cast<std::size_t>(contact.wall)], p.at, p.on_wall);
   }
 }
 

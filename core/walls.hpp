@@ -45,8 +45,8 @@ template <int Dim>
 class WallContacts {
  public:
   /// Lists rows within `skin` of an active wall, ordered by row, then wall.
-  void search(const ParticleStore<Dim>& store, std::span<const WallSpec> specs, std::span<const WallState> states,
-              double skin);
+  void search(const ParticleStore<Dim>& store, std::span<const WallSpec> specs,
+              std::span<const WallState> states, double skin);
 
   std::vector<WallContact<Dim>>& list() { return list_; }
   [[nodiscard]] const std::vector<WallContact<Dim>>& list() const { return list_; }
@@ -57,14 +57,16 @@ class WallContacts {
     const LawTable* laws = nullptr;
     double dt = 0.0;
   };
-  /// Adds wall forces to rows [begin, end). @param sums  one a wall; force and work of walls that move are added up
-  void add_to_rows(ParticleStore<Dim>& store, const Frame& frame, std::span<WallSums> sums, std::int32_t begin,
-                   std::int32_t end);
+  /// Adds wall forces to rows [begin, end). @param sums  one a wall; force and work of walls that
+  /// move are added up
+  void add_to_rows(ParticleStore<Dim>& store, const Frame& frame, std::span<WallSums> sums,
+                   std::int32_t begin, std::int32_t end);
   /// Force and torque on all walls as the next step will find them; changes no spring.
   void measure(const ParticleStore<Dim>& store, const Frame& frame, std::span<WallSums> sums) const;
 
   /// Distance from a position to a wall and the vector to its nearest point.
-  static double nearest(const WallSpec& spec, const WallState& state, const double* x, double* to_wall);
+  static double nearest(const WallSpec& spec, const WallState& state, const double* x,
+                        double* to_wall);
 
  private:
   struct Push {

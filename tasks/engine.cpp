@@ -10,9 +10,13 @@
 namespace barchan {
 namespace {
 
+constexpr double kChunkSeconds = 100e-6;
+constexpr std::int64_t kLeastChunk = 2048, kMostChunk = 1 << 20;  // pairs
 constexpr std::int64_t kStageCheck = 100;  // steps between looks at the kinetic ratio
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 }  // namespace
 
@@ -31,7 +35,8 @@ void Simulation::EngineOf<Dim>::step() {
   if (keeper_) keep_checkpoints();
   update_stage();
   update_lists();
-  if (schedule_->is_check_due(step_)) schedule_->begin_check(travel(), {stop_is_requested(), wants_checkpoint()});
+  if (schedule_->is_check_due(step_))
+    schedule_->begin_check(travel(), {stop_is_requested(), wants_checkpoint()});
   schedule_->poll();
   plates_->drive(world_.walls, step_);
 
@@ -46,6 +51,21 @@ void Simulation::EngineOf<Dim>::step() {
   ++step_;
 }
 
+/// Chunks of about kChunkSeconds, by what the pairs have cost since the last rebuild. No bit
+/// depends on it.
+template <int Dim>
+void Simulation::EngineOf<Dim>::size_chunks() {
+  std::int64_t pairs = 0;
+  for (int l = 0; l < strip_->num_lanes(); ++l) pairs += strip_->lane(l).num_pairs();
+  const double seconds = graph_->times().chunks - chunk_seconds_;
+  const auto worked = static_cast<double>(pairs / strip_->num_lanes() * (step_ - chunks_sized_at_));
+  chunk_seconds_ += seconds;
+  chunks_sized_at_ = step_;
+  if (worked <= 0.0 || seconds <= 0.0) return;
+  strip_->chunk_pairs = std::clamp(static_cast<std::int64_t>(kChunkSeconds * worked / seconds),
+                                   kLeastChunk, kMostChunk);
+}
+
 template <int Dim>
 void Simulation::EngineOf<Dim>::update_lists() {
   const bool travelled = schedule_->must_rebuild(step_);
@@ -55,19 +75,23 @@ void Simulation::EngineOf<Dim>::update_lists() {
     forget_checkpoint_request();
   }
   if (!travelled && !must_rebuild_) return;
+  size_chunks();
   const double begin = now();
   strip_->rebuild([this](const std::function<void(int)>& body) { graph_->for_each_lane(body); });
-  for (std::size_t w = 0; w < world_.walls.size(); ++w) walls_at_rebuild_[w] = world_.walls[w].point;
+  for (std::size_t w = 0; w < world_.walls.size(); ++w)
+    walls_at_rebuild_[w] = world_.walls[w].point;
   schedule_->rebuilt(step_);
   must_rebuild_ = false;
   rebuild_seconds_ += now() - begin;
-  if (trace_) trace_->slice(Trace::Slice::Rebuild, 0, static_cast<std::int64_t>(1e9 * begin), now_ns());
+  if (trace_)
+    trace_->slice(Trace::Slice::Rebuild, 0, static_cast<std::int64_t>(1e9 * begin), now_ns());
 }
 
 template <int Dim>
 void Simulation::EngineOf<Dim>::update_stage() {
   if (step_ == 0) return;
-  if (static_cast<std::size_t>(stage_) + 1 < model_.stages.size() && stage_is_over()) enter_stage(stage_ + 1);
+  if (static_cast<std::size_t>(stage_) + 1 < model_.stages.size() && stage_is_over())
+    enter_stage(stage_ + 1);
 }
 
 template <int Dim>
@@ -104,7 +128,8 @@ Travel Simulation::EngineOf<Dim>::travel() const {
   }
   for (std::size_t w = 0; w < world_.walls.size(); ++w) {
     if (!world_.walls[w].is_active) continue;
-    most.distance2 = std::max(most.distance2, (world_.walls[w].point - walls_at_rebuild_[w]).squaredNorm());
+    most.distance2 =
+        std::max(most.distance2, (world_.walls[w].point - walls_at_rebuild_[w]).squaredNorm());
     most.speed2 = std::max(most.speed2, world_.walls[w].velocity.squaredNorm());
   }
   return most;

@@ -62,9 +62,11 @@ struct WorldScale {
 template <int Dim>
 class Simulation::EngineOf final : public Simulation::Engine {
  public:
-  EngineOf(const Model& model, const ParticleSet& particles, MPI_Comm comm, const RunOptions& options);
+  EngineOf(const Model& model, const ParticleSet& particles, MPI_Comm comm,
+           const RunOptions& options);
 
-  EngineOf(const Model& model, const std::string& checkpoint, MPI_Comm comm, const RunOptions& options);
+  EngineOf(const Model& model, const std::string& checkpoint, MPI_Comm comm,
+           const RunOptions& options);
 
   std::int64_t run(std::int64_t num_steps) override;
   void for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const override;
@@ -94,6 +96,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   void make_trace();
   void step();
   void update_lists();
+  void size_chunks();
   void update_stage();
   void enter_stage(int stage);
   [[nodiscard]] bool stage_is_over();
@@ -111,6 +114,8 @@ class Simulation::EngineOf final : public Simulation::Engine {
   bool must_rebuild_ = false;
   bool must_save_ = false;  ///< all ranks agreed to
   WorldScale scale_;
+  double chunk_seconds_ = 0.0;  ///< of chunks when they were last sized
+  std::int64_t chunks_sized_at_ = 0;
   double loop_seconds_ = 0.0, rebuild_seconds_ = 0.0;
 };
 

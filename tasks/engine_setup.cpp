@@ -14,7 +14,8 @@
 namespace barchan {
 
 template <int Dim>
-Simulation::EngineOf<Dim>::EngineOf(const Model& model, const ParticleSet& particles, MPI_Comm comm, const RunOptions& options)
+Simulation::EngineOf<Dim>::EngineOf(const Model& model, const ParticleSet& particles, MPI_Comm comm,
+                                    const RunOptions& options)
     : Engine(model, comm, options) {
   check_particles(model_, particles);
   num_particles_ = static_cast<std::int64_t>(particles.particles.size());
@@ -34,7 +35,8 @@ void Simulation::EngineOf<Dim>::make_world(const WorldScale& scale) {
   world_.num_particles = scale.num_particles;
   world_.grid = Grid<Dim>(model_.domain, scale.reach, scale.num_particles);
   world_.laws = LawTable(model_.contacts);
-  world_.kernels = make_kernels(Dim, barchan::vector_width(options_.vector), world_.laws, scale.has_bonds, world_.grid.box());
+  world_.kernels = make_kernels(Dim, barchan::vector_width(options_.vector), world_.laws,
+                                scale.has_bonds, world_.grid.box());
   world_.bond_laws = model_.bond_laws;
   world_.wall_specs = model_.walls;
   for (const WallSpec& spec : model_.walls) {
@@ -51,15 +53,18 @@ template <int Dim>
 void Simulation::EngineOf<Dim>::make_loop() {
   choice_ = settle_exchange(*strip_, options_, communicator_);
   strip_->restart_waits();
-  graph_ = std::make_unique<StepGraph<Dim>>(*strip_, options_.threads, options_.schedule, options_.max_delay_seconds, options_.delay_seed);
-  schedule_ = std::make_unique<RebuildSchedule>(communicator_, world_.skin, world_.dt, model_.gravity.norm());
+  graph_ = std::make_unique<StepGraph<Dim>>(*strip_, options_.threads, options_.schedule,
+                                            options_.max_delay_seconds, options_.delay_seed);
+  schedule_ = std::make_unique<RebuildSchedule>(communicator_, world_.skin, world_.dt,
+                                                model_.gravity.norm());
   plates_ = std::make_unique<Plates>(communicator_, world_.wall_specs, world_.dt);
   if (options_.trace) make_trace();
 }
 
 template <int Dim>
 void Simulation::EngineOf<Dim>::make_trace() {
-  trace_ = std::make_unique<Trace>(communicator_, strip_->neighbours(), options_.threads, options_.trace_events);
+  trace_ = std::make_unique<Trace>(communicator_, strip_->neighbours(), options_.threads,
+                                   options_.trace_events);
   graph_->set_trace(trace_.get());
   strip_->set_trace(trace_.get());
 }
@@ -69,14 +74,18 @@ void Simulation::EngineOf<Dim>::make_strip() {
   if (options_.threads <= 0) options_.threads = default_threads(communicator_);
   const int fit = max_strips(world_.grid.num_slabs(), kMinSlabs);
   if (communicator_.size() > std::max(1, fit)) {
-    throw InputError(fmt::format("{} ranks for a domain that is {} cells of {:.3g} m long", communicator_.size(), world_.grid.num_slabs(),
-                                 (model_.domain.hi - model_.domain.lo)[world_.grid.axis(0)] / world_.grid.num_slabs()),
-                     fmt::format("at most {} strips of {} cells fit: use at most {} ranks, or cut along a longer axis by domain.strip_axis",
+    throw InputError(fmt::format("{} ranks for a domain that is {} cells of {:.3g} m long",
+                                 communicator_.size(), world_.grid.num_slabs(),
+                                 (model_.domain.hi - model_.domain.lo)[world_.grid.axis(0)] /
+                                     world_.grid.num_slabs()),
+                     fmt::format("at most {} strips of {} cells fit: use at most {} ranks, or cut "
+                                 "along a longer axis by domain.strip_axis",
                                  std::max(1, fit), kMinSlabs, std::max(1, fit)));
   }
   const int lanes = std::clamp(options_.threads, 1, std::max(1, fit / communicator_.size()));
-  auto exchange = first_exchange(options_, communicator_,
-                                 strip_neighbours(communicator_.rank(), communicator_.size(), world_.grid.is_periodic(0)));
+  auto exchange = first_exchange(
+      options_, communicator_,
+      strip_neighbours(communicator_.rank(), communicator_.size(), world_.grid.is_periodic(0)));
   const bool returns = options_.exchange == "return";
   strip_ = std::make_unique<Strip<Dim>>(world_, communicator_, std::move(exchange), lanes, returns);
 }

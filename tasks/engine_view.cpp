@@ -8,11 +8,14 @@
 namespace barchan {
 
 template <int Dim>
-OwnedParticle Simulation::EngineOf<Dim>::particle(const ParticleStore<Dim>& store, std::int32_t i) const {
+OwnedParticle Simulation::EngineOf<Dim>::particle(const ParticleStore<Dim>& store,
+                                                  std::int32_t i) const {
   const auto at = static_cast<std::size_t>(i);
   const double im = store.inverse_mass(i);
-  OwnedParticle p{store.id[at], store.type[at], store.radius(i), im > 0.0 ? 1.0 / im : std::numeric_limits<double>::infinity(),
-                  Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  OwnedParticle p{store.id[at],    store.type[at],
+                  store.radius(i), im > 0.0 ? 1.0 / im : std::numeric_limits<double>::infinity(),
+                  Vec3::Zero(),    Vec3::Zero(),
+                  Vec3::Zero()};
   for (int c = 0; c < Dim; ++c) {
     p.position[c] = store.x(i)[c];
     p.velocity[c] = store.v(i)[c];
@@ -22,7 +25,8 @@ OwnedParticle Simulation::EngineOf<Dim>::particle(const ParticleStore<Dim>& stor
 }
 
 template <int Dim>
-void Simulation::EngineOf<Dim>::for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const {
+void Simulation::EngineOf<Dim>::for_each_owned(
+    const std::function<void(const OwnedParticle&)>& visit) const {
   for (int l = 0; l < strip_->num_lanes(); ++l) {
     const auto& store = strip_->lane(l).store();
     for (std::int32_t i = 0; i < store.num_owned; ++i) visit(particle(store, i));
@@ -30,13 +34,16 @@ void Simulation::EngineOf<Dim>::for_each_owned(const std::function<void(const Ow
 }
 
 template <int Dim>
-void Simulation::EngineOf<Dim>::apply_forces(const std::function<Vec3(const OwnedParticle&)>& force) {
+void Simulation::EngineOf<Dim>::apply_forces(
+    const std::function<Vec3(const OwnedParticle&)>& force) {
   for (int l = 0; l < strip_->num_lanes(); ++l) {
     auto& store = strip_->lane(l).store();
     store.external.assign(static_cast<std::size_t>(store.num_owned) * Layout<Dim>::kForce, 0.0);
     for (std::int32_t i = 0; i < store.num_owned; ++i) {
       const Vec3 f = force(particle(store, i));
-      for (int c = 0; c < Dim; ++c) store.external[static_cast<std::size_t>(i) * Layout<Dim>::kForce + static_cast<std::size_t>(c)] = f[c];
+      for (int c = 0; c < Dim; ++c)
+        store.external[static_cast<std::size_t>(i) * Layout<Dim>::kForce +
+                       static_cast<std::size_t>(c)] = f[c];
     }
   }
 }
@@ -66,7 +73,8 @@ Measures Simulation::EngineOf<Dim>::measure() {
     exact.push_back(&w.work);
   }
   std::vector<std::int64_t> digits{mine.contacts, mine.bonds, mine.broken_bonds};
-  for (const ExactSum* sum : exact) digits.insert(digits.end(), sum->digits().begin(), sum->digits().end());
+  for (const ExactSum* sum : exact)
+    digits.insert(digits.end(), sum->digits().begin(), sum->digits().end());
   communicator_.allreduce_sum(std::span<std::int64_t>(digits));
   auto from = digits.begin();
   mine.contacts = *from++;

@@ -19,11 +19,13 @@ Plates::Plates(const Communicator& communicator, std::span<const WallSpec> specs
   }
   of_step_.fill(-1);
   if (loaded_.empty()) return;
-  for (auto& reduction : reductions_) reduction = std::make_unique<Reduction>(communicator, 0, 3 * kDigits * loaded_.size());
+  for (auto& reduction : reductions_)
+    reduction = std::make_unique<Reduction>(communicator, 0, 3 * kDigits * loaded_.size());
 }
 
 bool Plates::needs_forces(std::span<const WallState> states) const {
-  return std::any_of(loaded_.begin(), loaded_.end(), [&](std::size_t w) { return states[w].is_active; });
+  return std::any_of(loaded_.begin(), loaded_.end(),
+                     [&](std::size_t w) { return states[w].is_active; });
 }
 
 void Plates::drive(std::span<WallState> states, std::int64_t step) {
@@ -41,7 +43,8 @@ void Plates::drive(std::span<WallState> states, std::int64_t step) {
     Vec3 force = Vec3::Zero();
     for (int c = 0; c < 3 && has_forces; ++c) {
       ExactSum sum;
-      const auto digits = reductions_[slot]->sums().subspan((3 * p + static_cast<std::size_t>(c)) * kDigits, kDigits);
+      const auto digits = reductions_[slot]->sums().subspan(
+          (3 * p + static_cast<std::size_t>(c)) * kDigits, kDigits);
       std::copy(digits.begin(), digits.end(), sum.digits().begin());
       force[c] = sum.value();
     }
@@ -52,7 +55,8 @@ void Plates::drive(std::span<WallState> states, std::int64_t step) {
 void Plates::accelerate(WallState& state, const WallSpec& spec, const Vec3& force) const {
   const Vec3& n = spec.normal;
   const double area = spec.depth > 0.0 ? spec.width * spec.depth : spec.width;
-  const double speed = state.velocity[0] * n[0] + state.velocity[1] * n[1] + state.velocity[2] * n[2];
+  const double speed =
+      state.velocity[0] * n[0] + state.velocity[1] * n[1] + state.velocity[2] * n[2];
   const double push = force[0] * n[0] + force[1] * n[1] + force[2] * n[2];
   // A plate loaded by q presses in the direction of its normal, towards the particles.
   const double drive = push + spec.load * area - spec.damping * speed;
@@ -94,7 +98,8 @@ std::vector<SavedPlateForces> Plates::forces() {
 }
 
 void Plates::restore(std::span<const SavedPlateForces> forces, bool is_root) {
-  if (forces.size() != kLag) throw RunError("the checkpoint has forces on plates of another number of steps");
+  if (forces.size() != kLag)
+    throw RunError("the checkpoint has forces on plates of another number of steps");
   const std::size_t num_digits = 3 * kDigits * loaded_.size();
   for (std::size_t slot = 0; slot < forces.size(); ++slot) {
     of_step_[slot] = forces[slot].of_step;

@@ -12,11 +12,12 @@ namespace barchan {
 
 /// Motion of the walls, the same on every rank.
 ///
-/// A given velocity moves a wall by v·dt a step. A loaded plate is a rigid body with one degree of freedom s along
-/// its normal n:   mass·ds²/dt² = F·n − q·A − c·ds/dt,   A = width (2D, unit depth) or width·depth.
-/// F, the force of the particles on it, is summed over all ranks behind the next step and used kLag steps late on any
-/// number of ranks: the reduction is hidden, and the bits are the same. The lag takes kLag·dt·k off the damping of
-/// a plate on stiffness k, so a plate is given mass enough that this does not matter (see `barchan check`).
+/// A given velocity moves a wall by v·dt a step. A loaded plate is a rigid body with one degree of
+/// freedom s along its normal n:   mass·ds²/dt² = F·n − q·A − c·ds/dt,   A = width (2D, unit depth)
+/// or width·depth. F, the force of the particles on it, is summed over all ranks behind the next
+/// step and used kLag steps late on any number of ranks: the reduction is hidden, and the bits are
+/// the same. The lag takes kLag·dt·k off the damping of a plate on stiffness k, so a plate is given
+/// mass enough that this does not matter (see `barchan check`).
 class Plates {
  public:
   static constexpr int kLag = 2;
@@ -30,7 +31,8 @@ class Plates {
   void collect(std::span<const WallSums> sums, std::int64_t step);
   /// After a step: walls move.
   void move(std::span<WallState> states) const;
-  /// Forces that steps are still to use, by step % kLag; for checkpoints, between steps. Waits for what is in flight.
+  /// Forces that steps are still to use, by step % kLag; for checkpoints, between steps. Waits for
+  /// what is in flight.
   [[nodiscard]] std::vector<SavedPlateForces> forces();
   /// Puts them back into flight. Collective. Errors: RunError when they are not of as many plates.
   void restore(std::span<const SavedPlateForces> forces, bool is_root);

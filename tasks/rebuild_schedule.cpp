@@ -10,10 +10,12 @@
 
 namespace barchan {
 
-RebuildSchedule::RebuildSchedule(const Communicator& communicator, double skin, double dt, double gravity)
+RebuildSchedule::RebuildSchedule(const Communicator& communicator, double skin, double dt,
+                                 double gravity)
     : reduction_(communicator, 5, 0), skin_(skin), dt_(dt), gravity_(gravity) {}
 
-int RebuildSchedule::next_interval(double distance, double speed, double skin, double dt, double gravity, int last) {
+int RebuildSchedule::next_interval(double distance, double speed, double skin, double dt,
+                                   double gravity, int last) {
   const auto is_safe = [&](int n) {
     const double t = (2 * kLag + n) * dt;
     return distance + 2.0 * speed * t + gravity * t * t <= 0.5 * skin;
@@ -25,8 +27,8 @@ int RebuildSchedule::next_interval(double distance, double speed, double skin, d
 }
 
 void RebuildSchedule::begin_check(const Travel& mine, Wishes wishes) {
-  const double maxima[5] = {mine.distance2, mine.speed2, static_cast<double>(mine.outside), wishes.stop ? 1.0 : 0.0,
-                            wishes.save ? 1.0 : 0.0};
+  const double maxima[5] = {mine.distance2, mine.speed2, static_cast<double>(mine.outside),
+                            wishes.stop ? 1.0 : 0.0, wishes.save ? 1.0 : 0.0};
   reduction_.begin(maxima, {});
 }
 
@@ -48,17 +50,26 @@ bool RebuildSchedule::must_rebuild(std::int64_t step) {
   save_agreed_ = maxima[4] > 0.0;
   const double distance = std::sqrt(maxima[0]), speed = std::sqrt(maxima[1]);
   if (!std::isfinite(distance) || !std::isfinite(speed)) {
-    throw RunError(fmt::format("at step {} the state is no longer finite: a smaller time.step, more damping or less overlap at the "
-                               "start would help", step - kLag));
+    throw RunError(
+        fmt::format("at step {} the state is no longer finite: a smaller time.step, more damping "
+                    "or less overlap at the "
+                    "start would help",
+                    step - kLag));
   }
   if (maxima[2] > 0.0) {
-    throw RunError(fmt::format("at step {} particle {} has left the domain: enlarge domain.lo and domain.hi, or put a wall there",
-                               step - kLag, static_cast<std::int64_t>(maxima[2])));
+    throw RunError(
+        fmt::format("at step {} particle {} has left the domain: enlarge domain.lo and domain.hi, "
+                    "or put a wall there",
+                    step - kLag, static_cast<std::int64_t>(maxima[2])));
   }
   if (distance > 0.5 * skin_) {
-    throw RunError(fmt::format("at step {} a particle had moved {:.3g} m since the lists were built, more than half the skin of {:.3g} m "
-                               "(largest speed {:.3g} m/s): contacts may have been missed; give a larger search.skin or a smaller "
-                               "time.step", step - kLag, distance, skin_, speed));
+    throw RunError(
+        fmt::format("at step {} a particle had moved {:.3g} m since the lists were built, more "
+                    "than half the skin of {:.3g} m "
+                    "(largest speed {:.3g} m/s): contacts may have been missed; give a larger "
+                    "search.skin or a smaller "
+                    "time.step",
+                    step - kLag, distance, skin_, speed));
   }
   const int n = next_interval(distance, speed, skin_, dt_, gravity_, interval_);
   if (n < 0) return true;

@@ -11,14 +11,16 @@ namespace barchan {
 
 /// Decides when lists are rebuilt, from the state alone and alike on any number of ranks.
 ///
-/// A check at step s takes the exact global maximum of displacement d since the last rebuild, and of speed v. The
-/// reduction has until step s + kLag to come in, behind the work of kLag steps. Then, with t(n) = (2·kLag + n)·dt,
+/// A check at step s takes the exact global maximum of displacement d since the last rebuild, and
+/// of speed v. The reduction has until step s + kLag to come in, behind the work of kLag steps.
+/// Then, with t(n) = (2·kLag + n)·dt,
 ///
-///     d + 2·v·t(n) + g·t(n)² <= skin/2   for some n <= 2·(the last n), n <= kLongest:  next check n steps later;
-///     for no n >= 0:                                                                   rebuild now.
+///     d + 2·v·t(n) + g·t(n)² <= skin/2   for some n <= 2·(the last n), n <= kLongest:  next check
+///     n steps later; for no n >= 0: rebuild now.
 ///
-/// t(n) reaches to the answer of the next check, and speeds may double until then. Every check verifies the bound
-/// after the fact: d > skin/2 means that a contact may have been missed, which is an error, never silence.
+/// t(n) reaches to the answer of the next check, and speeds may double until then. Every check
+/// verifies the bound after the fact: d > skin/2 means that a contact may have been missed, which
+/// is an error, never silence.
 class RebuildSchedule {
  public:
   static constexpr int kLag = 2;
@@ -32,8 +34,9 @@ class RebuildSchedule {
   struct State {
     std::int64_t check_step = 0;
     int interval = 0;
-    bool has_check = false;         ///< begun, not yet answered
-    std::array<double, 3> check{};  ///< its answer: squared distance, squared speed, id of a particle outside
+    bool has_check = false;  ///< begun, not yet answered
+    std::array<double, 3>
+        check{};  ///< its answer: squared distance, squared speed, id of a particle outside
   };
 
   RebuildSchedule(const Communicator& communicator, double skin, double dt, double gravity);
@@ -43,7 +46,8 @@ class RebuildSchedule {
   void begin_check(const Travel& mine, Wishes wishes);
 
   /// The decision for `step`, before it; waits for the reduction when its time has come.
-  /// Errors, the same on every rank: RunError when a particle outran the skin, left the domain or is not finite.
+  /// Errors, the same on every rank: RunError when a particle outran the skin, left the domain or
+  /// is not finite.
   [[nodiscard]] bool must_rebuild(std::int64_t step);
   [[nodiscard]] bool stop_agreed() const { return stop_agreed_; }
   /// Whether some rank wished to save; true once.
@@ -58,7 +62,8 @@ class RebuildSchedule {
   void restore(const State& state);
 
   /// The rule above. @return steps to the next check, or -1: rebuild
-  static int next_interval(double distance, double speed, double skin, double dt, double gravity, int last);
+  static int next_interval(double distance, double speed, double skin, double dt, double gravity,
+                           int last);
 
  private:
   Reduction reduction_;

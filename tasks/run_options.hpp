@@ -15,15 +15,15 @@ enum class Schedule { Overlap, Sequential };
 
 /// How a run is carried out. Nothing in here changes a bit of the result.
 struct RunOptions {
-  int threads = 0;                    ///< per rank; 0 = cores of the node over ranks on it
-  std::string exchange = "auto";            ///< see exchange_choices()
+  int threads = 0;                ///< per rank; 0 = cores of the node over ranks on it
+  std::string exchange = "auto";  ///< see exchange_choices()
   Schedule schedule = Schedule::Overlap;
   std::optional<ContactSearchKind> search;  ///< instead of the deck's
   std::string vector = "auto";              ///< scalar, avx2, avx512 or the widest here
-  bool trace = false;                       ///< record what happens when; see Simulation::write_trace
-  std::size_t trace_events = 1 << 17;       ///< that each thread keeps, the latest
-  std::shared_ptr<Tape> tape;               ///< records all messages; played by exchange "replay"
-  double max_delay_seconds = 0.0;           ///< tests: random delays in messages and tasks
+  bool trace = false;                  ///< record what happens when; see Simulation::write_trace
+  std::size_t trace_events = 1 << 17;  ///< that each thread keeps, the latest
+  std::shared_ptr<Tape> tape;          ///< records all messages; played by exchange "replay"
+  double max_delay_seconds = 0.0;      ///< tests: random delays in messages and tasks
   std::uint64_t delay_seed = 0;
 };
 

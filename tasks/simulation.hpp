@@ -17,10 +17,11 @@
 
 namespace barchan {
 
-/// One owned particle as callers see it. Positions are those of time(), velocities half a step earlier (leapfrog).
+/// One owned particle as callers see it. Positions are those of time(), velocities half a step
+/// earlier (leapfrog).
 struct OwnedParticle {
   std::int64_t id;
-  std::int32_t type;  ///< material index
+  std::int32_t type;    ///< material index
   double radius, mass;  ///< mass of a fixed particle: infinite
   Vec3 position, velocity, omega;
 };
@@ -28,7 +29,8 @@ struct OwnedParticle {
 /// One kind of communication of this rank [s].
 struct CommunicationTime {
   double in_flight = 0.0;  ///< under way
-  double exposed = 0.0;    ///< of that, not spent on particles: waiting, or inside MPI; a worker's, averaged
+  double exposed =
+      0.0;  ///< of that, not spent on particles: waiting, or inside MPI; a worker's, averaged
 };
 
 /// Where the time of a run went, this rank; what workers do side by side is averaged over them.
@@ -36,10 +38,10 @@ struct Timings {
   double loop_seconds = 0.0;             ///< inside run()
   std::map<std::string, double> phases;  ///< name → seconds; the rest of the loop is "other"
   std::map<std::string, CommunicationTime> communication;  ///< "halo", "rebuild", "reductions"
-  double in_flight_seconds = 0.0;        ///< all kinds
+  double in_flight_seconds = 0.0;                          ///< all kinds
   double exposed_seconds = 0.0;
   std::int64_t rebuilds = 0, migrations = 0;
-  ExchangeStats exchange;                 ///< zero on one rank
+  ExchangeStats exchange;  ///< zero on one rank
 };
 
 /// A DEM simulation on all ranks of a communicator.
@@ -50,27 +52,32 @@ struct Timings {
 ///       sim.run(10);
 ///     }
 ///
-/// The state is the same to the bit for any number of ranks, threads and any exchange. The library works on a duplicate
-/// of the communicator, prints nothing and never ends the program.
-/// Construction, run, measure, digest, destruction and what is said to be are collective; the rest is local. One thread at a time.
+/// The state is the same to the bit for any number of ranks, threads and any exchange. The library
+/// works on a duplicate of the communicator, prints nothing and never ends the program.
+/// Construction, run, measure, digest, destruction and what is said to be are collective; the rest
+/// is local. One thread at a time.
 class Simulation {
  public:
   /// @param particles  all of them, the same on every rank
-  /// Errors: InputError, the same on every rank, for a model that cannot run (unstable step, too many ranks for the
-  /// domain, gross overlaps, unknown exchange or vector width).
-  Simulation(const Model& model, const ParticleSet& particles, MPI_Comm communicator, const RunOptions& options = {});
-  /// Goes on from a checkpoint, bit for bit, on any number of ranks and threads and with any exchange.
+  /// Errors: InputError, the same on every rank, for a model that cannot run (unstable step, too
+  /// many ranks for the domain, gross overlaps, unknown exchange or vector width).
+  Simulation(const Model& model, const ParticleSet& particles, MPI_Comm communicator,
+             const RunOptions& options = {});
+  /// Goes on from a checkpoint, bit for bit, on any number of ranks and threads and with any
+  /// exchange.
   /// @param model       of the run that wrote it; length and outputs may differ
   /// @param checkpoint  its folder; see find_checkpoint
   /// Errors, the same on every rank: InputError when it is damaged or of another model
-  static Simulation restore(const Model& model, const std::string& checkpoint, MPI_Comm communicator, const RunOptions& options = {});
+  static Simulation restore(const Model& model, const std::string& checkpoint,
+                            MPI_Comm communicator, const RunOptions& options = {});
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
   /// Advances by at most `num_steps`; fewer when a stop was requested. @return steps done
-  /// Errors: RunError, the same on every rank where all ranks can know it: a particle left the domain, the state is not
-  /// finite, a particle outran the skin; on one rank only: a wait without end.
+  /// Errors: RunError, the same on every rank where all ranks can know it: a particle left the
+  /// domain, the state is not finite, a particle outran the skin; on one rank only: a wait without
+  /// end.
   std::int64_t run(std::int64_t num_steps);
   /// Ends run() on all ranks within a few steps. Callable from a signal handler.
   static void request_stop() noexcept;
@@ -88,7 +95,8 @@ class Simulation {
   void for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const;
   [[nodiscard]] std::int64_t num_owned() const;
   [[nodiscard]] std::int64_t num_particles() const;  ///< on all ranks
-  /// Sets a force [N] on every owned particle, added in every step until it is set again or cleared.
+  /// Sets a force [N] on every owned particle, added in every step until it is set again or
+  /// cleared.
   void apply_forces(const std::function<Vec3(const OwnedParticle&)>& force);
   void clear_forces();
 
@@ -99,13 +107,16 @@ class Simulation {
   /// State digest over all ranks (design: same bits everywhere). Collective.
   [[nodiscard]] std::uint64_t digest();
 
-  /// From now on run() saves the state to `folder` as `spec` says, and when a checkpoint is requested; the newest
-  /// spec.keep stay. A checkpoint is copied between two steps and written behind the next ones; see CheckpointKeeper. It
-  /// holds the state at the beginning of a step, so whatever is written after run() returned comes first. Collective.
+  /// From now on run() saves the state to `folder` as `spec` says, and when a checkpoint is
+  /// requested; the newest spec.keep stay. A checkpoint is copied between two steps and written
+  /// behind the next ones; see CheckpointKeeper. It holds the state at the beginning of a step, so
+  /// whatever is written after run() returned comes first. Collective.
   void keep_checkpoints(const std::string& folder, const CheckpointSpec& spec);
-  /// Saves the state as it is, unless it just was; finish_checkpoints() waits for it. Collective. @pre keep_checkpoints()
+  /// Saves the state as it is, unless it just was; finish_checkpoints() waits for it. Collective.
+  /// @pre keep_checkpoints()
   void save_checkpoint();
-  /// Waits for what is being written. @return false, on all ranks, when the last one is not on the disk. Collective.
+  /// Waits for what is being written. @return false, on all ranks, when the last one is not on the
+  /// disk. Collective.
   bool finish_checkpoints();
   /// Saves soon, on all ranks when one asks for it. Callable from a signal handler.
   static void request_checkpoint() noexcept;
@@ -133,8 +144,8 @@ class Simulation {
   std::unique_ptr<Engine> engine_;
 };
 
-/// Names that RunOptions::exchange takes, the default first: `auto`, those of comm, the published scheme `return`. With a
-/// tape that plays, `replay` and no other.
+/// Names that RunOptions::exchange takes, the default first: `auto`, those of comm, the published
+/// scheme `return`. With a tape that plays, `replay` and no other.
 std::vector<std::string> exchange_choices();
 
 }  // namespace barchan

@@ -17,25 +17,34 @@ typename Lane<Dim>::Side in_core(Side side) {
   return side == Side::Left ? Lane<Dim>::Left : Lane<Dim>::Right;
 }
 
-constexpr std::size_t at(Side side) { return static_cast<std::size_t>(side); }
+constexpr std::size_t at(Side side) {
+  return static_cast<std::size_t>(side);
+}
 constexpr std::array<Side, 2> kSides{Side::Left, Side::Right};
 
 }  // namespace
 
 template <int Dim>
-Strip<Dim>::Strip(World<Dim>& world, const Communicator& communicator, std::unique_ptr<Exchange> exchange, int num_lanes,
-                  bool scheme_returns)
-    : world_(world), communicator_(communicator), exchange_(std::move(exchange)), sizes_(communicator, 1, 0),
-      neighbours_(strip_neighbours(communicator.rank(), communicator.size(), world.grid.is_periodic(0))),
-      returns_(scheme_returns), posts_(static_cast<std::size_t>(num_lanes)) {
+Strip<Dim>::Strip(World<Dim>& world, const Communicator& communicator,
+                  std::unique_ptr<Exchange> exchange, int num_lanes, bool scheme_returns)
+    : world_(world),
+      communicator_(communicator),
+      exchange_(std::move(exchange)),
+      sizes_(communicator, 1, 0),
+      neighbours_(
+          strip_neighbours(communicator.rank(), communicator.size(), world.grid.is_periodic(0))),
+      returns_(scheme_returns),
+      posts_(static_cast<std::size_t>(num_lanes)) {
   for (int l = 0; l < num_lanes; ++l) lanes_.push_back(std::make_unique<Lane<Dim>>(world));
   place_bands();
 }
 
 template <int Dim>
 bool Strip<Dim>::has_neighbour(int l, Side side) const {
-  return is_outer(l, side) ? neighbours_.has(side) || (communicator_.size() == 1 && num_lanes() > 1 && world_.grid.is_periodic(0))
-                           : true;
+  return is_outer(l, side)
+             ? neighbours_.has(side) ||
+                   (communicator_.size() == 1 && num_lanes() > 1 && world_.grid.is_periodic(0))
+             : true;
 }
 
 template <int Dim>
@@ -45,7 +54,8 @@ void Strip<Dim>::place_bands() {
     for (const Side side : kSides) {
       Band& band = lane(l).band(in_core<Dim>(side));
       band.exists = has_neighbour(l, side);
-      // Ghosts come first where the neighbour lies lower in the grid: always on the left, but around the end.
+      // Ghosts come first where the neighbour lies lower in the grid: always on the left, but
+      // around the end.
       band.ghosts_first = side == Side::Left ? place > 0 : place + 1 == total_lanes();
       band.returns = returns_ && is_outer(l, side) && neighbours_.has(side);
     }
@@ -60,7 +70,8 @@ void Strip<Dim>::finish_band(int l, Side side) {
   if (!is_outer(l, side) || !neighbours_.has(side)) {
     if (!fresh_) {
       const int n = num_lanes(), other = (l + (side == Side::Left ? n - 1 : 1)) % n;
-      mine.unpack_halo(core_side, posts_[static_cast<std::size_t>(other)].halo[static_cast<std::size_t>(parity_)][at(opposite(side))]);
+      mine.unpack_halo(core_side, posts_[static_cast<std::size_t>(other)]
+                                      .halo[static_cast<std::size_t>(parity_)][at(opposite(side))]);
     }
     return mine.finish_band(core_side);
   }
@@ -78,8 +89,9 @@ void Strip<Dim>::finish_band(int l, Side side) {
   mine.finish_band(core_side);
   if (!band.returns) return;
   const std::vector<double> results = mine.results();
-  send_halo(side, results.size() * sizeof(double),
-            [&](std::span<std::byte> message) { std::memcpy(message.data(), results.data(), message.size()); });
+  send_halo(side, results.size() * sizeof(double), [&](std::span<std::byte> message) {
+    std::memcpy(message.data(), results.data(), message.size());
+  });
 }
 
 /// Packing is work, the rest is the exchange's.
@@ -112,7 +124,8 @@ void Strip<Dim>::send_band(int l, Side side) {
     return send_halo(side, mine.halo_bytes(core_side),
                      [&](std::span<std::byte> message) { mine.pack_halo(core_side, message); });
   }
-  auto& outbox = posts_[static_cast<std::size_t>(l)].halo[static_cast<std::size_t>(1 - parity_)][at(side)];
+  auto& outbox =
+      posts_[static_cast<std::size_t>(l)].halo[static_cast<std::size_t>(1 - parity_)][at(side)];
   outbox.resize(mine.halo_bytes(core_side));
   mine.pack_halo(core_side, outbox);
 }
@@ -128,7 +141,8 @@ template <int Dim>
 void Strip<Dim>::wait_halo(Side side) {
   wait_until([&] { return exchange_->poll(side); },
              [&] {
-               return fmt::format("rank {}: halo message from rank {} ({})", communicator_.rank(), neighbours_.rank(side), name_of(side));
+               return fmt::format("rank {}: halo message from rank {} ({})", communicator_.rank(),
+                                  neighbours_.rank(side), name_of(side));
              });
 }
 
@@ -139,19 +153,25 @@ void Strip<Dim>::complete_halo() {
     for (const Side side : kSides) {
       if (is_outer(l, side) || !has_neighbour(l, side)) continue;
       const int other = l + (side == Side::Left ? -1 : 1);
-      lane(l).unpack_halo(in_core<Dim>(side), posts_[static_cast<std::size_t>(other)].halo[static_cast<std::size_t>(parity_)][at(opposite(side))]);
+      lane(l).unpack_halo(in_core<Dim>(side),
+                          posts_[static_cast<std::size_t>(other)]
+                              .halo[static_cast<std::size_t>(parity_)][at(opposite(side))]);
     }
   }
-  if (communicator_.size() == 1 && has_neighbour(0, Side::Left)) {  // around the end of a periodic strip axis
+  if (communicator_.size() == 1 &&
+      has_neighbour(0, Side::Left)) {  // around the end of a periodic strip axis
     const int last = num_lanes() - 1;
-    const auto& boxes = [&](int l) -> auto& { return posts_[static_cast<std::size_t>(l)].halo[static_cast<std::size_t>(parity_)]; };
+    const auto& boxes = [&](int l) -> auto& {
+      return posts_[static_cast<std::size_t>(l)].halo[static_cast<std::size_t>(parity_)];
+    };
     lane(0).unpack_halo(Lane<Dim>::Left, boxes(last)[at(Side::Right)]);
     lane(last).unpack_halo(Lane<Dim>::Right, boxes(0)[at(Side::Left)]);
   }
   for (const Side side : kSides) {
     if (!awaits(side) || (returns_ && side == Side::Right)) continue;
     wait_halo(side);
-    lane(side == Side::Left ? 0 : num_lanes() - 1).unpack_halo(in_core<Dim>(side), exchange_->received(side));
+    lane(side == Side::Left ? 0 : num_lanes() - 1)
+        .unpack_halo(in_core<Dim>(side), exchange_->received(side));
     exchange_->release(side);
     awaited_[at(side)] = false;
   }

@@ -16,7 +16,8 @@
 
 namespace barchan {
 
-/// Seconds that a rank waited in its rebuilds with nothing else to do, since the lists were first built.
+/// Seconds that a rank waited in its rebuilds with nothing else to do, since the lists were first
+/// built.
 struct RebuildWaits {
   double halo = 0.0;       ///< for a halo that the rebuild made useless
   double migration = 0.0;  ///< for migrants, and for counts when strips are cut anew
@@ -25,27 +26,29 @@ struct RebuildWaits {
   [[nodiscard]] double sum() const { return halo + migration + ghosts; }
 };
 
-/// The strip of one rank: its lanes, one per thread, and what passes between lanes and between ranks.
+/// The strip of one rank: its lanes, one per thread, and what passes between lanes and between
+/// ranks.
 ///
 ///   ranks    |        0        |        1        |
-///   lanes    |   0    |   1    |   2    |   3    |      lane cuts lie on slab faces; rank cuts are every T-th of them
+///   lanes    |   0    |   1    |   2    |   3    |      lane cuts lie on slab faces; rank cuts are
+///   every T-th of them
 ///
-/// A cut between two lanes of one rank works like one between ranks, with an outbox in memory for a message: a lane
-/// writes the outbox of step k + 1 when its band is finished in step k. Outboxes come in pairs, so that the
-/// neighbour may still read the one of step k.
+/// A cut between two lanes of one rank works like one between ranks, with an outbox in memory for a
+/// message: a lane writes the outbox of step k + 1 when its band is finished in step k. Outboxes
+/// come in pairs, so that the neighbour may still read the one of step k.
 template <int Dim>
 class Strip {
  public:
   /// @param scheme_returns  the published exchange: ghosts go right, forces come back left
-  Strip(World<Dim>& world, const Communicator& communicator, std::unique_ptr<Exchange> exchange, int num_lanes,
-        bool scheme_returns);
+  Strip(World<Dim>& world, const Communicator& communicator, std::unique_ptr<Exchange> exchange,
+        int num_lanes, bool scheme_returns);
 
   /// Cuts the domain for equal counts, keeps this rank's share, and builds all lists. Collective.
   void seed(const ParticleSet& set);
 
   /// Instead of seed: the state of a checkpoint, between steps. Collective.
-  /// @param shares  one for each lane of this rank: particles whose last rebuild left them between its cuts, and all that
-  /// has an end among them
+  /// @param shares  one for each lane of this rank: particles whose last rebuild left them between
+  /// its cuts, and all that has an end among them
   void restore(std::vector<int> cuts, std::span<const CheckpointShare> shares);
 
   /// Migration, canonical order, ghosts, lists, history. Collective; leaves ghosts up to date.
@@ -70,7 +73,8 @@ class Strip {
   void send_band(int l, Side side);
   /// After all bands: the next step's messages are expected.
   void end_step(bool sends);
-  /// Waits for the messages of this step and unpacks them, without computing; for measurements between steps.
+  /// Waits for the messages of this step and unpacks them, without computing; for measurements
+  /// between steps.
   void complete_halo();
 
   [[nodiscard]] const std::vector<int>& cuts() const { return cuts_; }
@@ -78,14 +82,18 @@ class Strip {
   /// Goes on with another exchange. Between a seed or rebuild and the next step. Collective.
   void set_exchange(std::unique_ptr<Exchange> exchange);
   [[nodiscard]] std::size_t most_halo_bytes() const;  ///< of a message to a neighbour
-  [[nodiscard]] std::int64_t send_ns() const { return send_ns_; }  ///< in the exchange, sending halos
+  [[nodiscard]] std::int64_t send_ns() const {
+    return send_ns_;
+  }  ///< in the exchange, sending halos
   [[nodiscard]] const RebuildWaits& rebuild_waits() const { return waits_; }
   void restart_waits() { waits_ = {}; }  ///< setting up is not part of the loop
   void set_trace(Trace* trace) { trace_ = trace; }
   [[nodiscard]] const Neighbours& neighbours() const { return neighbours_; }
   [[nodiscard]] std::int64_t num_owned() const;
   [[nodiscard]] std::int64_t num_rebuilds() const { return num_rebuilds_; }
-  [[nodiscard]] std::int64_t num_migrations() const { return num_migrations_; }  ///< particles that left this rank
+  [[nodiscard]] std::int64_t num_migrations() const {
+    return num_migrations_;
+  }  ///< particles that left this rank
   [[nodiscard]] std::size_t bytes() const;
   std::int64_t chunk_pairs = 1 << 14;  ///< pairs per chunk from the next rebuild on
 

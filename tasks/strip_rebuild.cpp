@@ -13,10 +13,12 @@
 namespace barchan {
 namespace {
 
-constexpr int kMinSlabs = 2;        // a particle lies in at most one band
-constexpr int kRecutEvery = 8;      // rebuilds between looks at the balance
+constexpr int kMinSlabs = 2;    // a particle lies in at most one band
+constexpr int kRecutEvery = 8;  // rebuilds between looks at the balance
 constexpr std::array<Side, 2> kSides{Side::Left, Side::Right};
-constexpr std::size_t at(Side side) { return static_cast<std::size_t>(side); }
+constexpr std::size_t at(Side side) {
+  return static_cast<std::size_t>(side);
+}
 
 }  // namespace
 
@@ -26,7 +28,8 @@ void Strip<Dim>::seed(const ParticleSet& set) {
   std::vector<std::int64_t> counts(static_cast<std::size_t>(grid.num_slabs()), 0);
   std::vector<int> slabs(set.particles.size());
   for (std::size_t p = 0; p < set.particles.size(); ++p) {
-    double x[3] = {set.particles[p].position[0], set.particles[p].position[1], set.particles[p].position[2]};
+    double x[3] = {set.particles[p].position[0], set.particles[p].position[1],
+                   set.particles[p].position[2]};
     grid.wrap(x);
     slabs[p] = grid.coordinate(x, 0);
     ++counts[static_cast<std::size_t>(slabs[p])];
@@ -38,10 +41,13 @@ void Strip<Dim>::seed(const ParticleSet& set) {
   std::vector<double> lengths;
   std::vector<char> bonded(set.particles.size(), 0);
   if (!set.bonds.empty()) {
-    for (std::size_t p = 0; p < set.particles.size(); ++p) by_id.emplace_back(set.particles[p].id, p);
+    for (std::size_t p = 0; p < set.particles.size(); ++p)
+      by_id.emplace_back(set.particles[p].id, p);
     std::sort(by_id.begin(), by_id.end());
     const auto find = [&](std::int64_t id) {
-      return std::lower_bound(by_id.begin(), by_id.end(), std::pair<std::int64_t, std::size_t>(id, 0))->second;
+      return std::lower_bound(by_id.begin(), by_id.end(),
+                              std::pair<std::int64_t, std::size_t>(id, 0))
+          ->second;
     };
     for (const BondData& b : set.bonds) {
       const std::size_t p = find(b.id_a), q = find(b.id_b);
@@ -56,7 +62,8 @@ void Strip<Dim>::seed(const ParticleSet& set) {
     }
   }
   for (int l = 0; l < num_lanes(); ++l) {
-    const int begin = cuts_[static_cast<std::size_t>(first_lane() + l)], end = cuts_[static_cast<std::size_t>(first_lane() + l + 1)];
+    const int begin = cuts_[static_cast<std::size_t>(first_lane() + l)],
+              end = cuts_[static_cast<std::size_t>(first_lane() + l + 1)];
     std::vector<ParticleData> mine;
     std::vector<char> mine_bonded;
     for (std::size_t p = 0; p < set.particles.size(); ++p) {
@@ -71,12 +78,14 @@ void Strip<Dim>::seed(const ParticleSet& set) {
     for (int l = 0; l < num_lanes(); ++l) body(l);
   };
   exchange_ghosts(one_by_one);
-  for (const auto& lane : lanes_) lane->restart_search_seconds();  // setting up is not part of the loop
+  for (const auto& lane : lanes_)
+    lane->restart_search_seconds();  // setting up is not part of the loop
 }
 
 template <int Dim>
 void Strip<Dim>::rebuild(const ForEachLane& parallel) {
-  // A halo that is on its way is of no use any more. Where the exchange allows it, it is waited for behind migration.
+  // A halo that is on its way is of no use any more. Where the exchange allows it, it is waited for
+  // behind migration.
   const bool sides_go_together = exchange_ && !exchange_->allows_uneven_sides();
   if (sides_go_together) discard_pending();
   ++num_rebuilds_;
@@ -109,7 +118,8 @@ void Strip<Dim>::recut() {
   std::vector<std::int64_t> counts(static_cast<std::size_t>(world_.grid.num_slabs()), 0);
   for (int l = 0; l < num_lanes(); ++l) {
     const auto& store = lane(l).store();
-    for (std::int32_t i = 0; i < store.num_owned; ++i) ++counts[static_cast<std::size_t>(world_.grid.coordinate(store.x(i), 0))];
+    for (std::int32_t i = 0; i < store.num_owned; ++i)
+      ++counts[static_cast<std::size_t>(world_.grid.coordinate(store.x(i), 0))];
   }
   const std::int64_t begin = now_ns();
   taped_sum(communicator_, counts);
@@ -126,7 +136,8 @@ void Strip<Dim>::migrate(const ForEachLane& parallel) {
   });
   const Bytes none;
   const auto outgoing = [&](Side side) -> const Bytes& {
-    return neighbours_.has(side) ? posts_[side == Side::Left ? 0 : posts_.size() - 1].out[at(side)] : none;
+    return neighbours_.has(side) ? posts_[side == Side::Left ? 0 : posts_.size() - 1].out[at(side)]
+                                 : none;
   };
   bulk_begin_ = now_ns();
   if (exchange_) exchange_->begin_bulk(outgoing(Side::Left), outgoing(Side::Right));
@@ -157,12 +168,14 @@ void Strip<Dim>::exchange_ghosts(const ForEachLane& parallel) {
     for (const Side side : kSides) {
       auto& out = posts_[static_cast<std::size_t>(l)].out[at(side)];
       out.clear();
-      if (has_neighbour(l, side)) lane(l).pack_ghosts(side == Side::Left ? Lane<Dim>::Left : Lane<Dim>::Right, out);
+      if (has_neighbour(l, side))
+        lane(l).pack_ghosts(side == Side::Left ? Lane<Dim>::Left : Lane<Dim>::Right, out);
     }
   });
   const Bytes none;
   const auto outgoing = [&](Side side) -> const Bytes& {
-    return neighbours_.has(side) ? posts_[side == Side::Left ? 0 : posts_.size() - 1].out[at(side)] : none;
+    return neighbours_.has(side) ? posts_[side == Side::Left ? 0 : posts_.size() - 1].out[at(side)]
+                                 : none;
   };
   bulk_begin_ = now_ns();
   if (exchange_) exchange_->begin_bulk(outgoing(Side::Left), outgoing(Side::Right));
@@ -209,10 +222,10 @@ void Strip<Dim>::wait_bulk(const char* what) {
         if (sizes_.is_in_flight()) (void)sizes_.test();
         return exchange_->poll_bulk();
       },
-             [this, what] {
-               return fmt::format("rank {}: {} of rebuild {} from ranks {} and {}", communicator_.rank(), what, num_rebuilds_,
-                                  neighbours_.left, neighbours_.right);
-             });
+      [this, what] {
+        return fmt::format("rank {}: {} of rebuild {} from ranks {} and {}", communicator_.rank(),
+                           what, num_rebuilds_, neighbours_.left, neighbours_.right);
+      });
   waits_.in_flight += 1e-9 * static_cast<double>(now_ns() - bulk_begin_);
 }
 
@@ -220,7 +233,9 @@ template <int Dim>
 std::size_t Strip<Dim>::most_halo_bytes() const {
   const Lane<Dim>&first = lane(0), &last = lane(num_lanes() - 1);
   std::size_t most = std::max(first.halo_bytes(Lane<Dim>::Left), last.halo_bytes(Lane<Dim>::Right));
-  if (returns_) most = std::max({most, first.max_results_bytes(Lane<Dim>::Left), last.max_results_bytes(Lane<Dim>::Right)});
+  if (returns_)
+    most = std::max(
+        {most, first.max_results_bytes(Lane<Dim>::Left), last.max_results_bytes(Lane<Dim>::Right)});
   return most;
 }
 

@@ -20,11 +20,13 @@ struct BatchAvx2 {
   BARCHAN_INLINE LawConstants<Simd> gather_rows(const double* rows, const std::uint8_t* code) {
     Real r[3][4];
     for (int q = 0; q < 4; ++q) {
-      for (int h = 0; h < (D == Damping::Constant ? 2 : 3); ++h) r[h][q] = Simd::load(rows + LawView::kRow * code[q] + 4 * h);
+      for (int h = 0; h < (D == Damping::Constant ? 2 : 3); ++h)
+        r[h][q] = Simd::load(rows + LawView::kRow * code[q] + 4 * h);
     }
     Simd::transpose(r[0][0], r[0][1], r[0][2], r[0][3]);
     Simd::transpose(r[1][0], r[1][1], r[1][2], r[1][3]);
-    LawConstants<Simd> c{r[0][0], r[0][1], r[0][2], r[0][3], r[1][0], r[1][1], r[1][2], r[1][3], {}, {}, {}};
+    LawConstants<Simd> c{r[0][0], r[0][1], r[0][2], r[0][3], r[1][0], r[1][1],
+                         r[1][2], r[1][3], {},      {},      {}};
     if constexpr (D != Damping::Constant) {
       Simd::transpose(r[2][0], r[2][1], r[2][2], r[2][3]);
       c.ct_rate = r[2][0];
@@ -84,19 +86,23 @@ struct BatchAvx2 {
   }
 
   template <int Dim>
-  BARCHAN_INLINE void gather_positions(const PairJob& job, std::int64_t k, Real& dx, Real& dy, Real& dz, Real& reach) {
+  BARCHAN_INLINE void gather_positions(const PairJob& job, std::int64_t k, Real& dx, Real& dy,
+                                       Real& dz, Real& reach) {
     const Real sign = {-1, -1, Dim == 2 ? 1.0 : -1.0, 1};
     Real x[4];
     for (int q = 0; q < 4; ++q) {
-      x[q] = combine(Simd::load(at(job.motion, 8, job.i[k + q])), sign, Simd::load(at(job.motion, 8, job.j[k + q])));
+      x[q] = combine(Simd::load(at(job.motion, 8, job.i[k + q])), sign,
+                     Simd::load(at(job.motion, 8, job.j[k + q])));
     }
     Simd::transpose(x[0], x[1], x[2], x[3]);
     dx = x[0], dy = x[1], dz = x[2], reach = x[Dim];
   }
 
   template <Damping D, int Dim>
-  BARCHAN_INLINE void respond_with_spring(const PairJob& job, std::int64_t k, const LawConstants<Simd>& c,
-                                          const PairState<Simd, Dim>& p, Real dt, PairForce<Simd, Dim>& f) {
+  BARCHAN_INLINE void respond_with_spring(const PairJob& job, std::int64_t k,
+                                          const LawConstants<Simd>& c,
+                                          const PairState<Simd, Dim>& p, Real dt,
+                                          PairForce<Simd, Dim>& f) {
     if constexpr (Dim == 2) {
       Real s = Simd::load(job.spring + k);
       respond<Simd, D>(c, p, dt, s, f);
@@ -145,9 +151,11 @@ struct BatchAvx2 {
     Real r[4];
     records(f, r);
     for (int q = 0; q < 4; ++q) {
-      double* a = job.force + 4 * static_cast<std::size_t>(static_cast<std::uint32_t>(job.row_i[k + q]));
+      double* a =
+          job.force + 4 * static_cast<std::size_t>(static_cast<std::uint32_t>(job.row_i[k + q]));
       Simd::store(a, Simd::load(a) + r[q]);
-      double* b = job.force + 4 * static_cast<std::size_t>(static_cast<std::uint32_t>(job.row_j[k + q]));
+      double* b =
+          job.force + 4 * static_cast<std::size_t>(static_cast<std::uint32_t>(job.row_j[k + q]));
       Simd::store(b, Simd::load(b) + r[q] * sign);
     }
   }
@@ -156,10 +164,12 @@ struct BatchAvx2 {
     Real r[8];
     records(f, r);
     for (int q = 0; q < 4; ++q) {
-      double* a = job.force + 8 * static_cast<std::size_t>(static_cast<std::uint32_t>(job.row_i[k + q]));
+      double* a =
+          job.force + 8 * static_cast<std::size_t>(static_cast<std::uint32_t>(job.row_i[k + q]));
       Simd::store(a, Simd::load(a) + r[q]);
       Simd::store(a + 4, Simd::load(a + 4) + r[4 + q]);
-      double* b = job.force + 8 * static_cast<std::size_t>(static_cast<std::uint32_t>(job.row_j[k + q]));
+      double* b =
+          job.force + 8 * static_cast<std::size_t>(static_cast<std::uint32_t>(job.row_j[k + q]));
       Simd::store(b, Simd::load(b) - r[q]);
       Simd::store(b + 4, Simd::load(b + 4) + r[4 + q]);
     }

@@ -24,24 +24,30 @@ struct BatchAvx512 {
 
   template <Damping D, bool OneLaw>
   BARCHAN_INLINE Tables tables(const LawView& laws) {
-    const auto at = [&laws](int field) __attribute__((always_inline)) { return Real(column(laws, field, OneLaw)); };
-    return {laws.rows, laws.size,
-            {at(LawView::Kn), at(LawView::Kt), at(LawView::InverseKt), at(LawView::Mu), at(LawView::Cap),
-             at(LawView::Cn), at(LawView::Ct), at(LawView::CnRate), at(LawView::CtRate),
-             at(LawView::CnCritical), at(LawView::CtCritical)}};
+    const auto at = [&laws](int field) __attribute__((always_inline)) {
+      return Real(column(laws, field, OneLaw));
+    };
+    return {laws.rows,
+            laws.size,
+            {at(LawView::Kn), at(LawView::Kt), at(LawView::InverseKt), at(LawView::Mu),
+             at(LawView::Cap), at(LawView::Cn), at(LawView::Ct), at(LawView::CnRate),
+             at(LawView::CtRate), at(LawView::CnCritical), at(LawView::CtCritical)}};
   }
 
   template <Damping D, bool OneLaw>
   BARCHAN_INLINE LawConstants<Simd> constants(const Tables& t, const std::uint8_t* code) {
     if constexpr (OneLaw) return t.column;
-    const __m512i lane = _mm512_cvtepu8_epi64(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(code)));
+    const __m512i lane =
+        _mm512_cvtepu8_epi64(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(code)));
     if (t.size <= LawView::kColumn) {
       const auto look = [lane](Real c) __attribute__((always_inline)) {
         return Real(_mm512_permutexvar_pd(lane, __m512d(c)));
       };
       const auto& c = t.column;
-      LawConstants<Simd> out{look(c.kn), look(c.kt), look(c.inverse_kt), look(c.mu), c.cap, look(c.cn), look(c.ct),
-                             {}, {}, {}, {}};
+      LawConstants<Simd> out{look(c.kn), look(c.kt), look(c.inverse_kt),
+                             look(c.mu), c.cap,      look(c.cn),
+                             look(c.ct), {},         {},
+                             {},         {}};
       if constexpr (D != Damping::Constant) {
         out.cn_rate = look(c.cn_rate), out.ct_rate = look(c.ct_rate);
         out.cn_critical = look(c.cn_critical), out.ct_critical = look(c.ct_critical);
@@ -49,12 +55,13 @@ struct BatchAvx512 {
       return out;
     }
     const __m512i row = _mm512_slli_epi64(lane, 4);
-    const auto look = [&t, row](int field) __attribute__((always_inline)) {
+    const auto look = [&t, row ](int field) __attribute__((always_inline)) {
       return Real(_mm512_i64gather_pd(row, t.rows + field, 8));
     };
-    return {look(LawView::Kn), look(LawView::Kt), look(LawView::InverseKt), look(LawView::Mu),
-            look(LawView::Cap), look(LawView::Cn), look(LawView::Ct), look(LawView::CnRate),
-            look(LawView::CtRate), look(LawView::CnCritical), look(LawView::CtCritical)};
+    return {look(LawView::Kn),         look(LawView::Kt),        look(LawView::InverseKt),
+            look(LawView::Mu),         look(LawView::Cap),       look(LawView::Cn),
+            look(LawView::Ct),         look(LawView::CnRate),    look(LawView::CtRate),
+            look(LawView::CnCritical), look(LawView::CtCritical)};
   }
 
   BARCHAN_INLINE std::size_t wide(std::int32_t i) { return static_cast<std::uint32_t>(i); }
@@ -69,26 +76,35 @@ struct BatchAvx512 {
     const __m512d n0 = _mm512_shuffle_f64x2(l0, l1, 0xdd), n1 = _mm512_shuffle_f64x2(l2, l3, 0xdd);
     const __m512d p0 = _mm512_shuffle_f64x2(h0, h1, 0x88), p1 = _mm512_shuffle_f64x2(h2, h3, 0x88);
     const __m512d q0 = _mm512_shuffle_f64x2(h0, h1, 0xdd), q1 = _mm512_shuffle_f64x2(h2, h3, 0xdd);
-    o[0] = Real(_mm512_shuffle_f64x2(m0, m1, 0x88)), o[4] = Real(_mm512_shuffle_f64x2(m0, m1, 0xdd));
-    o[2] = Real(_mm512_shuffle_f64x2(n0, n1, 0x88)), o[6] = Real(_mm512_shuffle_f64x2(n0, n1, 0xdd));
-    o[1] = Real(_mm512_shuffle_f64x2(p0, p1, 0x88)), o[5] = Real(_mm512_shuffle_f64x2(p0, p1, 0xdd));
-    o[3] = Real(_mm512_shuffle_f64x2(q0, q1, 0x88)), o[7] = Real(_mm512_shuffle_f64x2(q0, q1, 0xdd));
+    o[0] = Real(_mm512_shuffle_f64x2(m0, m1, 0x88)),
+    o[4] = Real(_mm512_shuffle_f64x2(m0, m1, 0xdd));
+    o[2] = Real(_mm512_shuffle_f64x2(n0, n1, 0x88)),
+    o[6] = Real(_mm512_shuffle_f64x2(n0, n1, 0xdd));
+    o[1] = Real(_mm512_shuffle_f64x2(p0, p1, 0x88)),
+    o[5] = Real(_mm512_shuffle_f64x2(p0, p1, 0xdd));
+    o[3] = Real(_mm512_shuffle_f64x2(q0, q1, 0x88)),
+    o[7] = Real(_mm512_shuffle_f64x2(q0, q1, 0xdd));
   }
 
   /// The columns of eight rows of four.
   BARCHAN_INLINE void transpose_halves(const __m256d (&a)[8], Real (&o)[4]) {
     __m512d w[4];
-    for (int q = 0; q < 4; ++q) w[q] = _mm512_insertf64x4(_mm512_castpd256_pd512(a[q]), a[q + 4], 1);
+    for (int q = 0; q < 4; ++q)
+      w[q] = _mm512_insertf64x4(_mm512_castpd256_pd512(a[q]), a[q + 4], 1);
     const __m512d l0 = _mm512_unpacklo_pd(w[0], w[1]), l1 = _mm512_unpacklo_pd(w[2], w[3]);
     const __m512d h0 = _mm512_unpackhi_pd(w[0], w[1]), h1 = _mm512_unpackhi_pd(w[2], w[3]);
     const __m512i low = _mm512_setr_epi64(0, 1, 8, 9, 4, 5, 12, 13);
     const __m512i high = _mm512_setr_epi64(2, 3, 10, 11, 6, 7, 14, 15);
-    o[0] = Real(_mm512_permutex2var_pd(l0, low, l1)), o[1] = Real(_mm512_permutex2var_pd(h0, low, h1));
-    o[2] = Real(_mm512_permutex2var_pd(l0, high, l1)), o[3] = Real(_mm512_permutex2var_pd(h0, high, h1));
+    o[0] = Real(_mm512_permutex2var_pd(l0, low, l1)),
+    o[1] = Real(_mm512_permutex2var_pd(h0, low, h1));
+    o[2] = Real(_mm512_permutex2var_pd(l0, high, l1)),
+    o[3] = Real(_mm512_permutex2var_pd(h0, high, h1));
   }
 
-  /// Records a·sign + b of eight pairs; sign is ±1, so the fused operation rounds once, like a difference.
-  BARCHAN_INLINE void differences(const PairJob& job, std::int64_t k, __m512d sign, Real (&column)[8]) {
+  /// Records a·sign + b of eight pairs; sign is ±1, so the fused operation rounds once, like a
+  /// difference.
+  BARCHAN_INLINE void differences(const PairJob& job, std::int64_t k, __m512d sign,
+                                  Real (&column)[8]) {
     __m512d row[8];
     for (int q = 0; q < 8; ++q) {
       row[q] = _mm512_fmadd_pd(_mm512_load_pd(job.motion + 8 * wide(job.i[k + q])), sign,
@@ -117,7 +133,8 @@ struct BatchAvx512 {
   }
 
   template <int Dim>
-  BARCHAN_INLINE void gather_positions(const PairJob& job, std::int64_t k, Real& dx, Real& dy, Real& dz, Real& reach) {
+  BARCHAN_INLINE void gather_positions(const PairJob& job, std::int64_t k, Real& dx, Real& dy,
+                                       Real& dz, Real& reach) {
     const __m256d sign = _mm256_setr_pd(-1, -1, Dim == 2 ? 1 : -1, 1);
     __m256d x[8];
     for (int q = 0; q < 8; ++q) {
@@ -130,8 +147,10 @@ struct BatchAvx512 {
   }
 
   template <Damping D, int Dim>
-  BARCHAN_INLINE void respond_with_spring(const PairJob& job, std::int64_t k, const LawConstants<Simd>& c,
-                                          const PairState<Simd, Dim>& p, Real dt, PairForce<Simd, Dim>& f) {
+  BARCHAN_INLINE void respond_with_spring(const PairJob& job, std::int64_t k,
+                                          const LawConstants<Simd>& c,
+                                          const PairState<Simd, Dim>& p, Real dt,
+                                          PairForce<Simd, Dim>& f) {
     if constexpr (Dim == 2) {
       Real s = Simd::load(job.spring + k);
       respond<Simd, D>(c, p, dt, s, f);
@@ -147,9 +166,12 @@ struct BatchAvx512 {
   /// Force records [fx fy ft 0] of eight pairs, pair q in r[q].
   BARCHAN_INLINE void records(const PairForce<Simd, 2>& f, __m256d (&r)[8]) {
     const __m512d zero = _mm512_setzero_pd();
-    const __m512d lo = _mm512_unpacklo_pd(__m512d(f.fx), __m512d(f.fy)), tl = _mm512_unpacklo_pd(__m512d(f.ft), zero);
-    const __m512d hi = _mm512_unpackhi_pd(__m512d(f.fx), __m512d(f.fy)), th = _mm512_unpackhi_pd(__m512d(f.ft), zero);
-    const __m512i a = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11), b = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
+    const __m512d lo = _mm512_unpacklo_pd(__m512d(f.fx), __m512d(f.fy)),
+                  tl = _mm512_unpacklo_pd(__m512d(f.ft), zero);
+    const __m512d hi = _mm512_unpackhi_pd(__m512d(f.fx), __m512d(f.fy)),
+                  th = _mm512_unpackhi_pd(__m512d(f.ft), zero);
+    const __m512i a = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11),
+                  b = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
     const __m512d o02 = _mm512_permutex2var_pd(lo, a, tl), o13 = _mm512_permutex2var_pd(hi, a, th);
     const __m512d o46 = _mm512_permutex2var_pd(lo, b, tl), o57 = _mm512_permutex2var_pd(hi, b, th);
     r[0] = _mm512_castpd512_pd256(o02), r[2] = _mm512_extractf64x4_pd(o02, 1);

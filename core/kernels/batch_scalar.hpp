@@ -18,8 +18,8 @@ struct BatchScalar {
   template <Damping D, bool OneLaw>
   static LawConstants<Simd> constants(const double* rows, const std::uint8_t* code) {
     const double* r = rows + LawView::kRow * *code;
-    return {r[LawView::Kn],     r[LawView::Kt],     r[LawView::InverseKt],  r[LawView::Mu],
-            r[LawView::Cap],    r[LawView::Cn],     r[LawView::Ct],         r[LawView::CnRate],
+    return {r[LawView::Kn],     r[LawView::Kt],         r[LawView::InverseKt], r[LawView::Mu],
+            r[LawView::Cap],    r[LawView::Cn],         r[LawView::Ct],        r[LawView::CnRate],
             r[LawView::CtRate], r[LawView::CnCritical], r[LawView::CtCritical]};
   }
 
@@ -33,13 +33,13 @@ struct BatchScalar {
     const std::int64_t i = job.i[k], j = job.j[k];
     const double *a = job.motion + 8 * i, *b = job.motion + 8 * j;
     const double *u = job.spin + 4 * i, *w = job.spin + 4 * j;
-    p = {b[0] - a[0], b[1] - a[1], b[2] - a[2], a[3] + b[3],
-         b[4] - a[4], b[5] - a[5], b[6] - a[6], a[7] + b[7],
-         u[0] + w[0], u[1] + w[1], u[2] + w[2]};
+    p = {b[0] - a[0], b[1] - a[1], b[2] - a[2], a[3] + b[3], b[4] - a[4], b[5] - a[5],
+         b[6] - a[6], a[7] + b[7], u[0] + w[0], u[1] + w[1], u[2] + w[2]};
   }
 
   template <int Dim>
-  static void gather_positions(const PairJob& job, std::int64_t k, double& dx, double& dy, double& dz, double& reach) {
+  static void gather_positions(const PairJob& job, std::int64_t k, double& dx, double& dy,
+                               double& dz, double& reach) {
     const double* a = job.motion + 8 * static_cast<std::int64_t>(job.i[k]);
     const double* b = job.motion + 8 * static_cast<std::int64_t>(job.j[k]);
     dx = b[0] - a[0];
@@ -50,8 +50,9 @@ struct BatchScalar {
 
   template <Damping D, int Dim>
   [[gnu::always_inline]] static void respond_with_spring(const PairJob& job, std::int64_t k,
-                                                         const LawConstants<Simd>& c, const PairState<Simd, Dim>& p,
-                                                         double dt, PairForce<Simd, Dim>& f) {
+                                                         const LawConstants<Simd>& c,
+                                                         const PairState<Simd, Dim>& p, double dt,
+                                                         PairForce<Simd, Dim>& f) {
     if constexpr (Dim == 2) {
       respond<Simd, D>(c, p, dt, job.spring[k], f);
     } else {

@@ -12,9 +12,10 @@ namespace barchan {
 std::vector<VectorWidth> vector_widths() {
   std::vector<VectorWidth> widths{VectorWidth::Scalar};
 #ifdef BARCHAN_HAS_X86_KERNELS
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) widths.push_back(VectorWidth::Avx2);
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
-      __builtin_cpu_supports("avx512bw")) {
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+    widths.push_back(VectorWidth::Avx2);
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("avx512bw")) {
     widths.push_back(VectorWidth::Avx512);
   }
 #endif
@@ -34,7 +35,8 @@ VectorWidth vector_width(const std::string& name) {
     if (name == name_of(width)) return width;
     known += (known.empty() ? "" : ", ") + name_of(width);
   }
-  throw InputError("vector width '" + name + "' is not to be had on this machine", "it has: auto, " + known);
+  throw InputError("vector width '" + name + "' is not to be had on this machine",
+                   "it has: auto, " + known);
 }
 
 namespace {
@@ -69,14 +71,16 @@ RowKernel pick_row_kernel(int dim, VectorWidth width, bool damped) {
 
 }  // namespace
 
-KernelSet make_kernels(int dim, VectorWidth width, const LawTable& laws, bool has_bonds, const PeriodicBox& box) {
+KernelSet make_kernels(int dim, VectorWidth width, const LawTable& laws, bool has_bonds,
+                       const PeriodicBox& box) {
   int variant = static_cast<int>(laws.damping());
   if (box.any()) variant |= kernels::kPeriodic;
   if (laws.size() == 2 && !has_bonds) variant |= kernels::kOneLaw;
   // In 2D almost every candidate of a packing touches; in 3D about half do.
   const NarrowKernel narrow = dim == 3 ? pick_narrow(dim, width, box.any()) : nullptr;
-  return {width, pick_pairs(dim, width, variant), pick_pairs(dim, width, variant | kernels::kKeep), narrow,
-          pick_row_kernel(dim, width, false), pick_row_kernel(dim, width, true)};
+  return {
+      width,  pick_pairs(dim, width, variant),    pick_pairs(dim, width, variant | kernels::kKeep),
+      narrow, pick_row_kernel(dim, width, false), pick_row_kernel(dim, width, true)};
 }
 
 }  // namespace barchan

@@ -22,10 +22,12 @@ struct KernelSet {
 /// Widths this machine has, narrowest first: scalar, avx2, avx512.
 std::vector<VectorWidth> vector_widths();
 std::string name_of(VectorWidth width);
-/// The widest for "auto". Throws InputError for an unknown width or one the machine lacks, with those it has.
+/// The widest for "auto". Throws InputError for an unknown width or one the machine lacks, with
+/// those it has.
 VectorWidth vector_width(const std::string& name);
 
 /// @param has_bonds  some pairs have the null law, so that laws must be looked up pair by pair
-KernelSet make_kernels(int dim, VectorWidth width, const LawTable& laws, bool has_bonds, const PeriodicBox& box);
+KernelSet make_kernels(int dim, VectorWidth width, const LawTable& laws, bool has_bonds,
+                       const PeriodicBox& box);
 
 }  // namespace barchan

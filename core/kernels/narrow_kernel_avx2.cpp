@@ -3,6 +3,8 @@
 
 namespace barchan::kernels {
 
-NarrowKernel pick_narrow_avx2(int dim, bool periodic) { return pick_narrow<BatchAvx2>(dim, periodic); }
+NarrowKernel pick_narrow_avx2(int dim, bool periodic) {
+  return pick_narrow<BatchAvx2>(dim, periodic);
+}
 
 }  // namespace barchan::kernels

@@ -3,6 +3,8 @@
 
 namespace barchan::kernels {
 
-NarrowKernel pick_narrow_avx512(int dim, bool periodic) { return pick_narrow<BatchAvx512>(dim, periodic); }
+NarrowKernel pick_narrow_avx512(int dim, bool periodic) {
+  return pick_narrow<BatchAvx512>(dim, periodic);
+}
 
 }  // namespace barchan::kernels

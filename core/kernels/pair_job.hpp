@@ -20,11 +20,13 @@ struct PairJob {
   double* force = nullptr;          ///< summed into, in list order
   const std::int32_t* i = nullptr;  ///< first particle of each pair, lower in canonical order
   const std::int32_t* j = nullptr;
-  const std::int32_t* row_i = nullptr;  ///< where its force goes: i, or a waste row while i waits for a halo
+  const std::int32_t* row_i =
+      nullptr;  ///< where its force goes: i, or a waste row while i waits for a halo
   const std::int32_t* row_j = nullptr;
   const std::uint8_t* code = nullptr;  ///< law of each pair
   double* spring = nullptr;            ///< per batch: component by component, eight lanes each
-  double* result = nullptr;            ///< if not null: the force of every pair is kept here, a force record each
+  double* result =
+      nullptr;  ///< if not null: the force of every pair is kept here, a force record each
   std::int64_t begin = 0, end = 0;
   double dt = 0.0;
   PeriodicBox box;

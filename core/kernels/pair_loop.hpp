@@ -5,20 +5,22 @@
 
 namespace barchan::kernels {
 
-// The pair loop, the same for every vector width. B (batch_*.hpp) gathers records into a PairState, looks
-// constants up and scatters forces, in list order; the law is in contact_law.hpp.
+// The pair loop, the same for every vector width. B (batch_*.hpp) gathers records into a PairState,
+// looks constants up and scatters forces, in list order; the law is in contact_law.hpp.
 
 /// A kernel's variant: Damping in the low bits, then flags.
 enum Flags { kDamping = 3, kPeriodic = 4, kOneLaw = 8, kKeep = 16, kNumVariants = 32 };
 
 template <class S>
-[[gnu::always_inline]] inline typename S::Real nearest_image(typename S::Real d, double length, double inverse) {
+[[gnu::always_inline]] inline typename S::Real nearest_image(typename S::Real d, double length,
+                                                             double inverse) {
   return d - S::set(length) * S::round(d * S::set(inverse));
 }
 
 template <class B, int Dim, int F>
 void run_pairs(const PairJob& given) {
-  const PairJob job = given;  // a copy that no store can alias, so that its pointers stay in registers
+  const PairJob job =
+      given;  // a copy that no store can alias, so that its pointers stay in registers
   using S = typename B::Simd;
   constexpr auto kDamped = static_cast<Damping>(F & kDamping);
   constexpr bool kUniform = (F & kOneLaw) != 0;
@@ -30,7 +32,8 @@ void run_pairs(const PairJob& given) {
     if constexpr ((F & kPeriodic) != 0) {
       pair.dx = nearest_image<S>(pair.dx, job.box.length[0], job.box.inverse[0]);
       pair.dy = nearest_image<S>(pair.dy, job.box.length[1], job.box.inverse[1]);
-      if constexpr (Dim == 3) pair.dz = nearest_image<S>(pair.dz, job.box.length[2], job.box.inverse[2]);
+      if constexpr (Dim == 3)
+        pair.dz = nearest_image<S>(pair.dz, job.box.length[2], job.box.inverse[2]);
     }
     const auto constants = B::template constants<kDamped, kUniform>(tables, job.code + k);
     PairForce<S, Dim> force;

@@ -8,12 +8,15 @@ struct Quad : simd::Avx2 {
   BARCHAN_INLINE Real of(double a, double b, double c, double d) { return Real{a, b, c, d}; }
   BARCHAN_INLINE Real last(Real v) { return Real(_mm256_permute4x64_pd(__m256d(v), 0xff)); }
   BARCHAN_INLINE Real where_positive(Real m, Real a) {
-    return Real(_mm256_and_pd(_mm256_cmp_pd(__m256d(m), _mm256_setzero_pd(), _CMP_GT_OQ), __m256d(a)));
+    return Real(
+        _mm256_and_pd(_mm256_cmp_pd(__m256d(m), _mm256_setzero_pd(), _CMP_GT_OQ), __m256d(a)));
   }
 };
 
 }  // namespace
 
-RowKernel pick_rows_avx2(int dim, bool damped) { return pick_rows<Quad>(dim, damped); }
+RowKernel pick_rows_avx2(int dim, bool damped) {
+  return pick_rows<Quad>(dim, damped);
+}
 
 }  // namespace barchan::kernels

@@ -7,7 +7,8 @@ namespace barchan::kernels {
 // Q holds half a record: four doubles. A fixed particle has 1/m = 0 and feels no gravity either.
 
 template <class Q, bool Damped>
-[[gnu::always_inline]] inline typename Q::Real kicked(typename Q::Real v, typename Q::Real dv, typename Q::Real alpha) {
+[[gnu::always_inline]] inline typename Q::Real kicked(typename Q::Real v, typename Q::Real dv,
+                                                      typename Q::Real alpha) {
   if constexpr (Damped) dv = dv - alpha * Q::copysign(Q::abs(dv), v);
   return v + dv;
 }
@@ -21,7 +22,8 @@ void advance_rows(const RowJob& job) {
     const auto gain = Q::of(k, k, 2.0 * k, 0.0), drift = Q::of(job.dt, job.dt, 0.0, 0.0);
     const auto gravity = Q::of(job.gravity[0] * k, job.gravity[1] * k, 0.0, 0.0);
     for (std::int32_t i = job.begin; i < job.end; ++i) {
-      double *x = job.motion + 8 * static_cast<std::int64_t>(i), *f = job.force + 4 * static_cast<std::int64_t>(i);
+      double *x = job.motion + 8 * static_cast<std::int64_t>(i),
+             *f = job.force + 4 * static_cast<std::int64_t>(i);
       const auto v = Q::load(x + 4), im = Q::last(v);
       const auto dv = Q::load(f) * (im * gain) + Q::where_positive(im, gravity);
       const auto w = kicked<Q, Damped>(v, dv, alpha);
@@ -34,7 +36,8 @@ void advance_rows(const RowJob& job) {
     const auto twist = Q::of(2.5 * k, 2.5 * k, 2.5 * k, 0.0);
     const auto gravity = Q::of(job.gravity[0] * k, job.gravity[1] * k, job.gravity[2] * k, 0.0);
     for (std::int32_t i = job.begin; i < job.end; ++i) {
-      double *x = job.motion + 8 * static_cast<std::int64_t>(i), *f = job.force + 8 * static_cast<std::int64_t>(i);
+      double *x = job.motion + 8 * static_cast<std::int64_t>(i),
+             *f = job.force + 8 * static_cast<std::int64_t>(i);
       double* u = job.spin + 4 * static_cast<std::int64_t>(i);
       const auto v = Q::load(x + 4), im = Q::last(v);
       const auto dv = Q::load(f) * (im * gain) + Q::where_positive(im, gravity);

@@ -14,12 +14,17 @@ struct Avx2 {
 
   BARCHAN_INLINE Real set(double a) { return Real(_mm256_set1_pd(a)); }
   BARCHAN_INLINE Real sqrt(Real a) { return Real(_mm256_sqrt_pd(__m256d(a))); }
-  BARCHAN_INLINE Real abs(Real a) { return Real(_mm256_andnot_pd(_mm256_set1_pd(-0.0), __m256d(a))); }
+  BARCHAN_INLINE Real abs(Real a) {
+    return Real(_mm256_andnot_pd(_mm256_set1_pd(-0.0), __m256d(a)));
+  }
   BARCHAN_INLINE Real copysign(Real magnitude, Real sign) {
-    return Real(_mm256_or_pd(__m256d(magnitude), _mm256_and_pd(_mm256_set1_pd(-0.0), __m256d(sign))));
+    return Real(
+        _mm256_or_pd(__m256d(magnitude), _mm256_and_pd(_mm256_set1_pd(-0.0), __m256d(sign))));
   }
   BARCHAN_INLINE Real round(Real a) { return Real(_mm256_round_pd(__m256d(a), 8)); }
-  BARCHAN_INLINE Mask less(Real a, Real b) { return _mm256_cmp_pd(__m256d(a), __m256d(b), _CMP_LT_OQ); }
+  BARCHAN_INLINE Mask less(Real a, Real b) {
+    return _mm256_cmp_pd(__m256d(a), __m256d(b), _CMP_LT_OQ);
+  }
   BARCHAN_INLINE Real select(Mask m, Real a, Real b) {
     return Real(_mm256_blendv_pd(__m256d(b), __m256d(a), m));
   }
@@ -31,8 +36,10 @@ struct Avx2 {
 
   /// Rows a, b, c, d become columns.
   BARCHAN_INLINE void transpose(Real& a, Real& b, Real& c, Real& d) {
-    const __m256d l0 = _mm256_unpacklo_pd(__m256d(a), __m256d(b)), h0 = _mm256_unpackhi_pd(__m256d(a), __m256d(b));
-    const __m256d l1 = _mm256_unpacklo_pd(__m256d(c), __m256d(d)), h1 = _mm256_unpackhi_pd(__m256d(c), __m256d(d));
+    const __m256d l0 = _mm256_unpacklo_pd(__m256d(a), __m256d(b)),
+                  h0 = _mm256_unpackhi_pd(__m256d(a), __m256d(b));
+    const __m256d l1 = _mm256_unpacklo_pd(__m256d(c), __m256d(d)),
+                  h1 = _mm256_unpackhi_pd(__m256d(c), __m256d(d));
     a = Real(_mm256_permute2f128_pd(l0, l1, 0x20));
     b = Real(_mm256_permute2f128_pd(h0, h1, 0x20));
     c = Real(_mm256_permute2f128_pd(l0, l1, 0x31));

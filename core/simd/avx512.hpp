@@ -18,7 +18,8 @@ struct Avx512 {
   BARCHAN_INLINE Real sqrt(Real a) { return Real(_mm512_sqrt_pd(__m512d(a))); }
   BARCHAN_INLINE Real abs(Real a) { return Real(_mm512_abs_pd(__m512d(a))); }
   BARCHAN_INLINE Real copysign(Real magnitude, Real sign) {
-    return Real(_mm512_or_pd(__m512d(magnitude), _mm512_and_pd(_mm512_set1_pd(-0.0), __m512d(sign))));
+    return Real(
+        _mm512_or_pd(__m512d(magnitude), _mm512_and_pd(_mm512_set1_pd(-0.0), __m512d(sign))));
   }
   BARCHAN_INLINE Real round(Real a) { return Real(_mm512_roundscale_pd(__m512d(a), 8)); }
   BARCHAN_INLINE Mask less(Real a, Real b) {

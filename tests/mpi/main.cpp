@@ -1,5 +1,6 @@
-// Runs every test on all ranks at once. Rank 0 prints; the others print only what went wrong with them. A test
-// that fails on any rank fails on rank 0 too, and a test that hangs is named before all ranks are ended.
+// Runs every test on all ranks at once. Rank 0 prints; the others print only what went wrong with
+// them. A test that fails on any rank fails on rank 0 too, and a test that hangs is named before
+// all ranks are ended.
 #include <gtest/gtest.h>
 #include <mpi.h>
 #include <unistd.h>

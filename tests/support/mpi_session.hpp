@@ -6,7 +6,8 @@
 
 namespace barchan::test {
 
-/// Starts MPI on the first call and ends it with the process: for the few unit tests that need a communicator.
+/// Starts MPI on the first call and ends it with the process: for the few unit tests that need a
+/// communicator.
 inline MPI_Comm world() {
   int is_initialized = 0;
   MPI_Initialized(&is_initialized);
