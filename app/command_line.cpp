@@ -66,6 +66,12 @@ void add_run(CLI::App& root, RunArguments& run, std::string& schedule, std::stri
   command.add_option("--steps", run.steps, "Number of steps, instead of the deck's")
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53));
+  command
+      .add_option(
+          "--restart", run.restart,
+          "Go on from a checkpoint: 'auto' takes the newest of the folder that is whole; or "
+          "its path")
+      ->type_name("auto|PATH");
   add_settings(command, run.settings);
   command
       .add_option("--threads", run.options.threads,

@@ -19,6 +19,7 @@ struct RunArguments {
   std::string deck;
   std::string out;  ///< empty: by the deck's name
   std::optional<std::int64_t> steps;
+  std::string restart;                ///< empty, "auto" or a path
   std::vector<std::string> settings;  ///< key=value
   RunOptions options;
   std::string graph;            ///< file for the step graph; empty: none

@@ -2,10 +2,13 @@
 #include <csignal>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include <barchan/app/commands.hpp>
 #include <barchan/app/loaded_deck.hpp>
 #include <barchan/app/progress.hpp>
 #include <barchan/app/replay.hpp>
+#include <barchan/app/restart.hpp>
 #include <barchan/app/summary_table.hpp>
 #include <barchan/app/verdict.hpp>
 #include <barchan/core/error.hpp>
@@ -23,7 +26,13 @@ extern "C" void on_signal(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
+extern "C" void on_save_signal(int /*signal*/) {
+  Simulation::request_checkpoint();
+}
+
 void catch_signals() {
+  std::signal(SIGUSR1, on_save_signal);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a full disk
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
 }
@@ -36,7 +45,6 @@ RunFolder folder_of(const RunArguments& arguments) {
 /// all ranks.
 LoadedDeck load(const Communicator& world, const RunArguments& arguments,
                 std::optional<StepLimit>& limit) {
-  on_rank_zero(world, [&] { folder_of(arguments).check(arguments.force); });
   LoadedDeck loaded;
   agree(world, [&] {
     loaded = load_deck(arguments.deck, arguments.settings);
@@ -49,6 +57,11 @@ LoadedDeck load(const Communicator& world, const RunArguments& arguments,
   return loaded;
 }
 
+std::string with_last_checkpoint(const Simulation& simulation, const std::string& what) {
+  const std::string last = simulation.last_checkpoint();
+  return last.empty() ? what : what + "; the last checkpoint is " + last;
+}
+
 void advance(Simulation& simulation, RunResults& results, Progress& progress) {
   const std::int64_t end = simulation.model().time.num_steps;
   while (simulation.step() < end && !simulation.stopped()) {
@@ -57,9 +70,10 @@ void advance(Simulation& simulation, RunResults& results, Progress& progress) {
       simulation.run(std::min(due, progress.most_steps()));
     } catch (const std::exception& e) {
       progress.clear();
-      end_run(simulation.communicator(), e.what());
+      end_run(simulation.communicator(), with_last_checkpoint(simulation, e.what()));
     }
     progress.update();
+    print_checkpoint_warnings(simulation, progress);
     results.write();
   }
   progress.clear();
@@ -74,26 +88,53 @@ void write_graph(const Simulation& simulation, const std::string& path) {
   });
 }
 
+/// The last state, where checkpoints are wanted or the run was interrupted. Before the results: a
+/// signal may leave little time.
+void save_last(Simulation& simulation, Progress& progress, bool interrupted) {
+  const CheckpointSpec& spec = simulation.model().checkpoint;
+  if (interrupted || spec.every_steps > 0 || spec.every_seconds > 0.0) simulation.save_checkpoint();
+  const bool is_saved = simulation.finish_checkpoints();
+  print_checkpoint_warnings(simulation, progress);
+  if (!is_saved && interrupted)
+    throw RunError("the run was interrupted and its last state could not be saved");
+}
+
+Simulation begin(const Communicator& world, const RunOptions& options, const LoadedDeck& loaded,
+                 const RestartPoint& from) {
+  const Model& model = loaded.deck.model;
+  if (!from.checkpoint) return {model, loaded.particles, world.handle(), options};
+  if (from.checkpoint->step > model.time.num_steps) {
+    throw InputError(fmt::format("the checkpoint is of step {}, and the run has {} steps",
+                                 from.checkpoint->step, model.time.num_steps),
+                     "give more --steps or an earlier checkpoint");
+  }
+  return Simulation::restore(model, from.checkpoint->path, world.handle(), options);
+}
+
 }  // namespace
 
 void run_deck(const Communicator& world, const RunArguments& arguments) {
+  const RunFolder folder = folder_of(arguments);
+  const RestartPoint from = restart_point(world, arguments, folder);
   std::optional<StepLimit> limit;
   LoadedDeck loaded = load(world, arguments, limit);
   const Model& model = loaded.deck.model;
   RunOptions options = arguments.options;
   std::optional<RecordedRun> recorded;
   if (options.exchange == "replay") recorded = record_run(world, loaded, arguments, options);
-  Simulation simulation(model, loaded.particles, world.handle(), options);
+  Simulation simulation = begin(world, options, loaded, from);
   if (!arguments.graph.empty()) write_graph(simulation, arguments.graph);
   const std::vector<Ring> rings = find_rings(loaded.deck.sources, loaded.begins, loaded.particles);
   catch_signals();
-  const RunFolder folder = folder_of(arguments);
-  RunResults results(simulation, folder, loaded.particles, {arguments.deck, rings, limit});
+  RunResults results(simulation, folder, loaded.particles,
+                     {arguments.deck, rings, limit, from.continues});
+  simulation.keep_checkpoints(folder.file("checkpoints"), model.checkpoint);
   loaded.particles = {};
 
   Progress progress(simulation, arguments.quiet);
   advance(simulation, results, progress);
   const bool interrupted = simulation.step() < model.time.num_steps;
+  save_last(simulation, progress, interrupted);
   const RunSummary summary = results.finish(interrupted);
   if (arguments.options.trace) simulation.write_trace(folder.file("trace.json"));
   if (world.is_root() && !arguments.quiet) print_summary(summary, folder, model);

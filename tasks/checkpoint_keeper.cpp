@@ -47,17 +47,6 @@ std::string describe(int code) {
   return code == kUnknownCode ? "an unknown error" : std::strerror(code);
 }
 
-class HeldUp {
- public:
-  explicit HeldUp(double& seconds) : seconds_(seconds) {}
-  ~HeldUp() { seconds_ += std::chrono::duration<double>(Clock::now() - begin_).count(); }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  double& seconds_;
-  Clock::time_point begin_ = Clock::now();
-};
-
 }  // namespace
 
 CheckpointKeeper::CheckpointKeeper(const Communicator& communicator, std::string folder,
@@ -96,7 +85,6 @@ bool CheckpointKeeper::is_overdue() const {
 }
 
 CheckpointCopy& CheckpointKeeper::begin() {
-  const HeldUp held(seconds_);
   wait_idle();
   last_time_ = std::chrono::steady_clock::now();
   return copy_;
@@ -239,7 +227,6 @@ void CheckpointKeeper::take_commit() {
 }
 
 bool CheckpointKeeper::finish() {
-  const HeldUp held(seconds_);
   wait_idle();
   return last_begun_ < 0 || communicator_.any_of(last_is_good_);
 }

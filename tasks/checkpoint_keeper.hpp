@@ -62,7 +62,6 @@ class CheckpointKeeper {
   /// Where the newest complete checkpoint of this run is; rank 0; empty before the first.
   [[nodiscard]] const std::string& last_complete() const { return last_complete_; }
   [[nodiscard]] std::vector<std::string> take_warnings();
-  [[nodiscard]] double seconds() const { return seconds_; }  ///< that steps were held up
 
  private:
   enum class Phase { Idle, Writing, Agreeing, Committing };
@@ -97,7 +96,6 @@ class CheckpointKeeper {
   std::string last_complete_;
   std::vector<std::string> warnings_;
   std::chrono::steady_clock::time_point last_time_ = std::chrono::steady_clock::now();
-  double seconds_ = 0.0;
   int num_exceptions_;
 };
 

@@ -116,7 +116,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   WorldScale scale_;
   double chunk_seconds_ = 0.0;  ///< of chunks when they were last sized
   std::int64_t chunks_sized_at_ = 0;
-  double loop_seconds_ = 0.0, rebuild_seconds_ = 0.0;
+  double loop_seconds_ = 0.0, rebuild_seconds_ = 0.0, checkpoint_seconds_ = 0.0;
 };
 
 }  // namespace barchan

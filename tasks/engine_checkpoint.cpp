@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 
 #include <fmt/format.h>
 
@@ -47,6 +48,7 @@ bool Simulation::EngineOf<Dim>::wants_checkpoint() const {
 
 template <int Dim>
 void Simulation::EngineOf<Dim>::save_checkpoint() {
+  const auto begin = std::chrono::steady_clock::now();
   must_save_ = false;
   CheckpointCopy& copy = keeper_->begin();
   copy.step = step_;
@@ -59,6 +61,8 @@ void Simulation::EngineOf<Dim>::save_checkpoint() {
   copy.state.clear();
   if (communicator_.is_root()) copy.state = encode(state());
   keeper_->start();
+  checkpoint_seconds_ +=
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 template <int Dim>

@@ -132,6 +132,7 @@ Timings Simulation::EngineOf<Dim>::timings() const {
               {"rebuild_wait", waits.sum()},
               {"reduction_wait", reductions},
               {"search", search.chunks + search.bands + search.rebuild}};
+  if (checkpoint_seconds_ > 0.0) t.phases["checkpoint"] = checkpoint_seconds_;
   double rest = loop_seconds_;
   for (const auto& [name, seconds] : t.phases) rest -= seconds;
   t.phases["other"] = std::max(0.0, rest);

@@ -81,4 +81,13 @@ void RunFolder::begin() const {
   }
 }
 
+void RunFolder::resume() const {
+  try {
+    fs::create_directories(path_ + "/snapshots");
+    fs::remove(path_ + "/run.json");  // is there only once a run has ended
+  } catch (const fs::filesystem_error& e) {
+    refuse(path_, "cannot go on in the output folder: " + e.code().message(), kElsewhere);
+  }
+}
+
 }  // namespace barchan

@@ -23,6 +23,9 @@ class RunFolder {
   /// nothing else. One rank. Errors: InputError.
   void begin() const;
 
+  /// Makes ready to go on with what is in the folder. One rank. Errors: InputError.
+  void resume() const;
+
  private:
   std::string path_;
 };

@@ -33,9 +33,15 @@ RunResults::RunResults(Simulation& simulation, RunFolder folder, const ParticleS
       snapshots_(folder_.file("snapshots"), Densities(simulation.model(), particles)) {
   if (snapshots_every_ <= 0) snapshots_every_ = kNever;
   agree(simulation.communicator(), [&] {
-    if (simulation.communicator().is_root()) folder_.begin();
+    if (simulation.communicator().is_root()) spec_.continues ? folder_.resume() : folder_.begin();
   });
-  series_.emplace(simulation, folder_.file("series.csv"), spec_.rings);
+  const bool continues = spec_.continues;
+  series_.emplace(simulation, folder_.file("series.csv"), spec_.rings, continues);
+  if (continues) {
+    snapshots_.resume(simulation, snapshots_every_);
+    write();
+    return;
+  }
   series_->append(simulation);
   last_row_ = simulation.step();
   snapshots_.write(simulation);

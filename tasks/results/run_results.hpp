@@ -16,6 +16,7 @@ struct ResultsSpec {
   std::string deck;                ///< as the user named it
   std::vector<Ring> rings;         ///< whose diameters go into the series
   std::optional<StepLimit> limit;  ///< smallest of step_limits()
+  bool continues = false;          ///< the folder is that of the checkpoint the simulation is from
 };
 
 /// Writes a run's folder as its deck asks for:
@@ -31,7 +32,9 @@ struct ResultsSpec {
 /// the folder cannot be made; RunError when a file cannot be written.
 class RunResults {
  public:
-  /// Clears and starts the folder, with the state as it is: RunFolder::check is the caller's.
+  /// Clears and starts the folder, with the state as it is: RunFolder::check is the caller's. When
+  /// it continues, all that is of later steps goes, so that what follows is as if never
+  /// interrupted.
   /// @param simulation  lives longer
   RunResults(Simulation& simulation, RunFolder folder, const ParticleSet& particles,
              ResultsSpec spec);

@@ -63,11 +63,13 @@ std::string column_name(const std::string& name) {
 }
 
 SeriesTable::SeriesTable(const Simulation& simulation, const std::string& path,
-                         std::vector<Ring> rings)
+                         std::vector<Ring> rings, bool continues)
     : rings_(std::move(rings)) {
   agree(simulation.communicator(), [&] {
     if (!simulation.communicator().is_root()) return;
-    writer_.emplace(SeriesWriter::create(path, columns_of(simulation.model(), rings_)));
+    const auto columns = columns_of(simulation.model(), rings_);
+    writer_.emplace(continues ? SeriesWriter::resume(path, columns, simulation.step() - 1)
+                              : SeriesWriter::create(path, columns));
   });
 }
 

@@ -15,7 +15,9 @@ namespace barchan {
 class SeriesTable {
  public:
   /// Starts the file on rank 0. Collective. Errors: RunError.
-  SeriesTable(const Simulation& simulation, const std::string& path, std::vector<Ring> rings);
+  /// @param continues  keeps the rows before the present step. Errors: InputError: other columns
+  SeriesTable(const Simulation& simulation, const std::string& path, std::vector<Ring> rings,
+              bool continues = false);
 
   /// A row of the state as it is. Collective. @return what was measured. Errors: RunError.
   Measures append(Simulation& simulation);

@@ -1,6 +1,8 @@
 #include <barchan/tasks/results/snapshots.hpp>
 
 #include <algorithm>
+#include <charconv>
+#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -49,6 +51,17 @@ std::string piece_name(std::int64_t step, int rank) {
   return fmt::format("step_{:09}_rank_{}.vtp", step, rank);
 }
 
+constexpr std::string_view kPrefix = "step_";
+
+/// The step in the name of a snapshot or its piece; -1 for other files.
+std::int64_t step_of(const std::string& name) {
+  std::int64_t step = -1;
+  if (!name.starts_with(kPrefix)) return step;
+  const auto result =
+      std::from_chars(name.data() + kPrefix.size(), name.data() + name.size(), step);
+  return result.ec == std::errc{} ? step : -1;
+}
+
 }  // namespace
 
 Densities::Densities(const Model& model, const ParticleSet& particles) {
@@ -66,6 +79,27 @@ double Densities::of(std::int64_t id, std::int32_t type) const {
                        [](const auto& entry, std::int64_t wanted) { return entry.first < wanted; });
   if (it != others_.end() && it->first == id) return it->second;
   return of_material_[static_cast<std::size_t>(type)];
+}
+
+void SnapshotWriter::resume(const Simulation& simulation, std::int64_t every) {
+  namespace fs = std::filesystem;
+  agree(simulation.communicator(), [&] {
+    if (!simulation.communicator().is_root()) return;
+    std::vector<fs::path> obsolete;
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+      const std::string name = entry.path().filename().string();
+      const std::int64_t step = step_of(name);
+      if (step < 0) continue;
+      const bool stays = step < simulation.step() && step % every == 0;
+      if (!stays)
+        obsolete.push_back(entry.path());
+      else if (name.ends_with(".pvtp"))
+        entries_.push_back({static_cast<double>(step) * simulation.model().time.step, name});
+    }
+    for (const fs::path& path : obsolete) fs::remove(path);
+    std::sort(entries_.begin(), entries_.end(),
+              [](const PvdEntry& a, const PvdEntry& b) { return a.time < b.time; });
+  });
 }
 
 void SnapshotWriter::write(const Simulation& simulation) {

@@ -1,0 +1,156 @@
+"""A run that ends early and goes on gives the files of one that was never interrupted.
+
+usage: restart_test.py BARCHAN [--kills N] [--seed S]
+
+Ends runs by their number of steps, by a signal, and by kill -9 of one rank at a random moment; goes on with --restart
+auto, on other numbers of ranks and threads; then compares state digest, series.csv and snapshots with the undisturbed
+run. A failure names the seed, which repeats the moments in steps' terms only roughly: time is not repeatable.
+"""
+
+import argparse
+import json
+import os
+import pathlib
+import random
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+SOURCE = pathlib.Path(os.environ.get("BARCHAN_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
+STEPS, EVERY = 3000, 200
+# The plate comes down early, so that all that a checkpoint holds is there when ranks are killed.
+OPTIONS = ["--set", "stage.settle.max_time=0.1", "--set", "output.picture=false",
+           "--set", "output.series_every=100", "--set", "output.snapshots_every=1000",
+           "--set", f"checkpoint.every_steps={EVERY}", "--quiet"]
+failures = []
+
+
+def expect(is_so, what):
+    if not is_so:
+        failures.append(what)
+        print("FAILED: " + what, flush=True)
+
+
+def line_of(command, folder, ranks, threads, *more, steps=STEPS):
+    launcher = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
+    return [*launcher, command, "run", str(SOURCE / "examples" / "soil_duct.toml"), *OPTIONS, "--steps",
+            str(steps), "--threads", str(threads), "--out", folder, *more]
+
+
+def run(*arguments, **more):
+    return subprocess.run(line_of(*arguments, **more), capture_output=True, text=True, timeout=500)
+
+
+def finished(folder):
+    """digest, series and snapshots' list of a run that has ended"""
+    with open(f"{folder}/run.json", encoding="utf-8") as file:
+        digest = json.load(file)["state_digest"]
+    series = pathlib.Path(folder, "series.csv").read_text(encoding="utf-8")
+    pvd = pathlib.Path(folder, "snapshots", "run.pvd").read_text(encoding="utf-8")
+    missing = [name for name in re.findall(r'file="([^"]+)"', pvd) if not pathlib.Path(folder, "snapshots", name).exists()]
+    return digest, series, pvd, missing
+
+
+def compare(folder, expected, what):
+    got = finished(folder)
+    for name, a, b in zip(("digest", "series.csv", "run.pvd", "missing snapshots"), got, expected):
+        expect(a == b, f"{what}: {name} differs from the undisturbed run")
+
+
+def children_of(parent):
+    """Process ids of the command's ranks below mpirun."""
+    found = subprocess.run(["ps", "--ppid", str(parent), "-o", "pid="], capture_output=True, text=True)
+    return [int(word) for word in found.stdout.split()]
+
+
+def stop_and_go_on(command, expected):
+    shutil.rmtree("stopped", ignore_errors=True)
+    first = run(command, "stopped", 1, 2, steps=1234)
+    expect(first.returncode == 0, "1,234 steps: " + first.stderr)
+    refused = run(command, "stopped", 2, 1, "--restart", "auto", steps=1000)
+    expect(refused.returncode == 2 and "1234" in refused.stderr, "fewer steps than the checkpoint: " + refused.stderr)
+    other = run(command, "stopped", 1, 1, "--restart", "auto", "--set", "gravity=[0.0, -1.0]")
+    expect(other.returncode == 2 and "gravity" in other.stderr, "another deck is refused: " + other.stderr)
+    second = run(command, "stopped", 3, 1, "--restart", "auto")
+    expect(second.returncode == 0, "the rest on three ranks: " + second.stderr)
+    compare("stopped", expected, "ended at 1,234 steps, went on on three ranks")
+
+
+def skip_damaged(command, expected):
+    newest = sorted(pathlib.Path("stopped/checkpoints").iterdir())[-1]
+    with open(newest / "rank_00000.bin", "r+b") as file:
+        file.seek(5000)
+        byte = file.read(1)[0]
+        file.seek(5000)
+        file.write(bytes([byte ^ 4]))
+    done = run(command, "stopped", 2, 2, "--restart", "auto")
+    expect(done.returncode == 0 and "skipped" in done.stderr and "checksum" in done.stderr, "damaged one is named: " + done.stderr)
+    compare("stopped", expected, "went on from the checkpoint before a damaged one")
+
+
+def save_on_signals(command, expected):
+    shutil.rmtree("signalled", ignore_errors=True)
+    process = subprocess.Popen(line_of(command, "signalled", 1, 1, "--set", "checkpoint.every_steps=0"),
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    while process.poll() is None and not os.path.exists("signalled/series.csv"):
+        time.sleep(0.01)
+    time.sleep(0.2)
+    process.send_signal(signal.SIGUSR1)
+    time.sleep(0.3)
+    process.send_signal(signal.SIGTERM)
+    out, err = process.communicate(timeout=100)
+    expect(process.returncode == 0, "ends well on SIGTERM: " + err)
+    saved = sorted(os.listdir("signalled/checkpoints")) if os.path.isdir("signalled/checkpoints") else []
+    expect(len(saved) in (1, 2), f"saves on signals: {saved}")  # one when the run was over before the second
+    done = run(command, "signalled", 2, 1, "--restart", "auto", "--set", "checkpoint.every_steps=0")
+    expect(done.returncode == 0, "goes on after signals: " + done.stderr)
+    compare("signalled", expected, "signalled")
+
+
+def kill_and_go_on(command, expected, rng, number, seconds):
+    folder = "killed"
+    shutil.rmtree(folder, ignore_errors=True)
+    for attempt in range(20):
+        ranks, threads = rng.choice((2, 3, 4)), rng.choice((1, 2))
+        patience = rng.uniform(0.1, 1.0) * seconds if attempt < 3 else 300
+        process = subprocess.Popen(line_of(command, folder, ranks, threads, "--restart", "auto"), stdout=subprocess.PIPE,
+                                   stderr=subprocess.PIPE, text=True)
+        try:
+            _, err = process.communicate(timeout=patience)
+            expect(process.returncode == 0, f"kill {number}: a restart failed: {err}")
+            break
+        except subprocess.TimeoutExpired:
+            victims = children_of(process.pid)
+            if victims:
+                os.kill(rng.choice(victims), signal.SIGKILL)
+            process.communicate(timeout=100)
+    compare(folder, expected, f"kill {number}")
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("command", nargs="?", default=os.environ.get("BARCHAN_COMMAND"))
+    parser.add_argument("--kills", type=int, default=2)
+    parser.add_argument("--seed", type=int, default=random.randrange(10**6))
+    arguments = parser.parse_args()
+    rng = random.Random(arguments.seed)
+    print("seed", arguments.seed)
+    shutil.rmtree("whole", ignore_errors=True)
+    begin = time.time()
+    whole = run(arguments.command, "whole", 1, 1)
+    seconds = time.time() - begin
+    expect(whole.returncode == 0, whole.stderr)
+    expected = finished("whole")
+    stop_and_go_on(arguments.command, expected)
+    skip_damaged(arguments.command, expected)
+    save_on_signals(arguments.command, expected)
+    for number in range(arguments.kills):
+        kill_and_go_on(arguments.command, expected, rng, number + 1, seconds)
+    print("all passed" if not failures else f"{len(failures)} failed")
+    sys.exit(1 if failures else 0)
+
+
+main()
