@@ -7,11 +7,18 @@
 #include <string>
 
 #include <barchan/comm/tape.hpp>
+#include <barchan/core/departure.hpp>
 #include <barchan/core/model.hpp>
 
 namespace barchan {
 
 enum class Schedule { Overlap, Sequential };
+
+/// Tests: the last rank loses one of these in the first rebuild from `step` on.
+struct LossFault {
+  Loss what = Loss::Nothing;
+  std::int64_t step = 0;
+};
 
 /// How a run is carried out. Nothing in here changes a bit of the result.
 struct RunOptions {
@@ -25,6 +32,7 @@ struct RunOptions {
   std::shared_ptr<Tape> tape;          ///< records all messages; played by exchange "replay"
   double max_delay_seconds = 0.0;      ///< tests: random delays in messages and tasks
   std::uint64_t delay_seed = 0;
+  LossFault loss;  ///< tests
 };
 
 }  // namespace barchan
