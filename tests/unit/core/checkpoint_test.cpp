@@ -241,7 +241,7 @@ TEST(Checkpoint, RefusesAManifestWithNumbersThatAreNoCounts) {
         {"\"step\": 5", "\"step\": -5"},
         {"\"step\": 5", "\"step\": 1e300"},
         {"\"step\": 5", "\"step\": 9223372036854775807"},
-        {"\"version\": 1", "\"version\": 1e10"},
+        {"\"version\":", "\"version\": 1e10, \"was\":"},
         {"\"dimension\": 2", "\"dimension\": 4"}}) {
     std::string body = text.substr(0, text.rfind(",\n\"xxh3\""));
     ASSERT_NE(body.find(from), std::string::npos) << from;
