@@ -13,6 +13,7 @@
 #include <barchan/app/verdict.hpp>
 #include <barchan/core/error.hpp>
 #include <barchan/core/io/text_file.hpp>
+#include <barchan/tasks/exchange_setup.hpp>
 #include <barchan/tasks/results/agree.hpp>
 #include <barchan/tasks/results/run_results.hpp>
 
@@ -114,6 +115,8 @@ Simulation begin(const Communicator& world, const RunOptions& options, const Loa
 }  // namespace
 
 void run_deck(const Communicator& world, const RunArguments& arguments) {
+  check_exchange(arguments.options.exchange, world);
+  check_exchange(arguments.record, world);
   const RunFolder folder = folder_of(arguments);
   const RestartPoint from = restart_point(world, arguments, folder);
   std::optional<StepLimit> limit;

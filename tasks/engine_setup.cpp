@@ -53,8 +53,7 @@ template <int Dim>
 void Simulation::EngineOf<Dim>::make_loop() {
   choice_ = settle_exchange(*strip_, options_, communicator_);
   strip_->restart_waits();
-  graph_ = std::make_unique<StepGraph<Dim>>(*strip_, options_.threads, options_.schedule,
-                                            options_.max_delay_seconds, options_.delay_seed);
+  graph_ = std::make_unique<StepGraph<Dim>>(*strip_, options_);
   schedule_ = std::make_unique<RebuildSchedule>(communicator_, world_.skin, world_.dt,
                                                 model_.gravity.norm());
   plates_ = std::make_unique<Plates>(communicator_, world_.wall_specs, world_.dt);

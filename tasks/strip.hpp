@@ -119,6 +119,7 @@ class Strip {
   void send_halo(Side side, std::size_t bytes, Pack&& pack);
   void count_wait(double& seconds, Trace::Slice name, std::int64_t begin);
   void begin_sizes();
+  void reserve_posts();
 
   World<Dim>& world_;
   const Communicator& communicator_;

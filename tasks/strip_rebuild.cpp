@@ -197,6 +197,7 @@ void Strip<Dim>::exchange_ghosts(const ForEachLane& parallel) {
     lane(l).restore_history();
     lane(l).cut_chunks(chunk_pairs);
   });
+  reserve_posts();
   fresh_ = true;
   awaited_ = {};
   // In the published scheme results come back even where ghosts are fresh.
@@ -207,6 +208,18 @@ void Strip<Dim>::exchange_ghosts(const ForEachLane& parallel) {
   sizes_.wait();
   count_wait(waits_.ghosts, Trace::Slice::Reduction, begin);
   exchange_->reserve(static_cast<std::size_t>(sizes_.maxima()[0]));
+}
+
+/// Steps must not allocate.
+template <int Dim>
+void Strip<Dim>::reserve_posts() {
+  for (int l = 0; l < num_lanes(); ++l) {
+    for (const Side side : kSides) {
+      const std::size_t bytes =
+          lane(l).halo_bytes(side == Side::Left ? Lane<Dim>::Left : Lane<Dim>::Right);
+      for (auto& boxes : posts_[static_cast<std::size_t>(l)].halo) boxes[at(side)].reserve(bytes);
+    }
+  }
 }
 
 template <int Dim>
