@@ -77,10 +77,10 @@ void Strip<Dim>::finish_band(int l, Side side) {
   }
   if (band.returns && side == Side::Right) {
     const auto message = exchange_->received(side);
-    std::vector<double> results(message.size() / sizeof(double));
-    std::memcpy(results.data(), message.data(), results.size() * sizeof(double));
+    results_.resize(message.size() / sizeof(double));
+    std::memcpy(results_.data(), message.data(), results_.size() * sizeof(double));
     exchange_->release(side);
-    return mine.finish_right_band(results);
+    return mine.finish_right_band(results_);
   }
   if (awaits(side)) {
     mine.unpack_halo(core_side, exchange_->received(side));
@@ -88,9 +88,9 @@ void Strip<Dim>::finish_band(int l, Side side) {
   }
   mine.finish_band(core_side);
   if (!band.returns) return;
-  const std::vector<double> results = mine.results();
-  send_halo(side, results.size() * sizeof(double), [&](std::span<std::byte> message) {
-    std::memcpy(message.data(), results.data(), message.size());
+  mine.results(results_);
+  send_halo(side, results_.size() * sizeof(double), [&](std::span<std::byte> message) {
+    std::memcpy(message.data(), results_.data(), message.size());
   });
 }
 

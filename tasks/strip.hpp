@@ -129,6 +129,7 @@ class Strip {
   bool returns_;
   std::vector<std::unique_ptr<Lane<Dim>>> lanes_;
   std::vector<Post> posts_;
+  std::vector<double> results_;  ///< of the published scheme, going or come
   std::vector<int> cuts_;
   std::array<bool, 2> awaited_{};  ///< a message of another rank is due in this step
   bool fresh_ = true;              ///< ghosts are up to date: nothing to unpack in this step

@@ -220,6 +220,10 @@ void Strip<Dim>::reserve_posts() {
       for (auto& boxes : posts_[static_cast<std::size_t>(l)].halo) boxes[at(side)].reserve(bytes);
     }
   }
+  if (!returns_) return;
+  results_.reserve(std::max(lane(0).max_results_bytes(Lane<Dim>::Left),
+                            lane(num_lanes() - 1).max_results_bytes(Lane<Dim>::Right)) /
+                   sizeof(double));
 }
 
 template <int Dim>
