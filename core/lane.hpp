@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include <barchan/core/bonds.hpp>
 #include <barchan/core/contact_search.hpp>
+#include <barchan/core/departure.hpp>
 #include <barchan/core/grid.hpp>
 #include <barchan/core/kernels/kernel_set.hpp>
 #include <barchan/core/pair_list.hpp>
@@ -58,8 +60,9 @@ struct Measures {
   ExactSum momentum[3];                      ///< [N·s]
   std::int64_t contacts = 0;                 ///< touching pairs without a bond, each once
   std::int64_t bonds = 0, broken_bonds = 0;
-  double max_overlap = 0.0;  ///< [m], with particles or walls
-  double max_speed = 0.0;    ///< [m/s]
+  double max_overlap = 0.0;        ///< [m], with particles or walls
+  double max_overlap_share = 0.0;  ///< of the smaller radius
+  double max_speed = 0.0;          ///< [m/s]
   void add(const Measures& other);
 };
 
@@ -117,6 +120,26 @@ class Lane {
   /// Instead of finish_band(Right). @param results  what results() gave on the other side
   void finish_right_band(std::span<const double> results);
 
+  // ---- particles that left the domain (lane_outside.cpp), between steps
+  /// Owned particles out of the domain, in canonical order.
+  [[nodiscard]] std::vector<Departure> outside(std::int64_t step) const;
+  /// These particles, of any lane, go in the begin_rebuild that follows, with their contacts and
+  /// bonds. @param ids  ascending. @return how many of those this lane counts
+  LinkCounts remove(std::span<const std::int64_t> ids);
+
+  // ---- what a run that goes wrong says (lane_watch.cpp), between steps
+  /// A particle moved farther than half the skin in one of the steps so far, or is not finite.
+  [[nodiscard]] bool is_fast() const { return is_fast_; }
+  /// The fastest one; one that is not finite before all others. -1: there is none
+  [[nodiscard]] std::int32_t fastest_row() const;
+  /// What a row touches.
+  struct Partners {
+    std::vector<std::int64_t> ids;
+    std::vector<std::int32_t> walls;
+  };
+  [[nodiscard]] Partners partners(std::int32_t row);
+  [[nodiscard]] WorstOverlap worst_overlap() const;
+
   // ---- the rebuild (lane_rebuild.cpp), in this order
   /// Instead of begin_rebuild at the start of a run: owns these particles and bonds. @pre they lie
   /// in the slabs
@@ -149,6 +172,9 @@ class Lane {
   // ---- between steps, ghosts up to date (lane_measure.cpp)
   [[nodiscard]] Measures measure(const Vec3& gravity);
   [[nodiscard]] Travel travel() const;  ///< since the last rebuild; needs no ghosts
+  /// Lists before these were used with a wall that had moved so far since they were built; the next
+  /// travel() tells when that was too far. After a rebuild.
+  void note_travel(double distance2) { last_distance2_ = std::max(last_distance2_, distance2); }
   [[nodiscard]] std::uint64_t digest() const;
 
   // ---- what others see
@@ -172,8 +198,13 @@ class Lane {
   /// packed.
   void unpack_history();
   [[nodiscard]] std::int64_t num_leaving() const {
-    return std::count_if(goes_.begin(), goes_.end(), [](auto g) { return g != 0; });
+    return std::count_if(goes_.begin(), goes_.end(), [](auto g) { return g == 1 || g == 2; });
   }
+  /// What rebuilds have found too much or too little, since the start: links after them less links
+  /// before them. Summed over all lanes it is zero, or something was lost.
+  [[nodiscard]] const LinkCounts& imbalance() const { return imbalance_; }
+  void lose(Loss what) { loss_ = what; }        ///< tests: one of these, in the next rebuild
+  void forget_imbalance() { imbalance_ = {}; }  ///< the links of the start came from elsewhere
   [[nodiscard]] int slab_begin() const { return slab_begin_; }
   [[nodiscard]] int slab_end() const { return slab_end_; }
   [[nodiscard]] std::int64_t num_pairs() const;
@@ -212,6 +243,14 @@ class Lane {
   /// drift.
   [[nodiscard]] double distance2_of_last_step() const;
   [[nodiscard]] int direction_of(int slab) const;  ///< 0 here, 1 left, 2 right
+  static constexpr std::int8_t kGone = 3;          ///< as a direction: out of the domain
+  [[nodiscard]] bool is_removed(std::int32_t row) const {
+    return !removed_.empty() && std::binary_search(removed_.begin(), removed_.end(),
+                                                   store_.id[static_cast<std::size_t>(row)]);
+  }
+  [[nodiscard]] bool counts_bond(std::int32_t bond) const;
+  /// Whether to lose one of these now.
+  bool loses(Loss what) { return loss_ == what && std::exchange(loss_, Loss::Nothing) == what; }
   [[nodiscard]] bool computes_bond(std::int32_t bond) const;
   [[nodiscard]] std::pair<bool, bool> bond_leaves(std::int32_t bond) const;
   PairJob job(PairList& list) const;
@@ -269,8 +308,13 @@ class Lane {
 
   // between begin_rebuild and restore_history
   std::vector<std::int32_t> new_row_;  ///< of every source row; -1: left
-  std::vector<std::int8_t> goes_;      ///< of every source row: 0 stays, 1 left, 2 right
+  std::vector<std::int8_t> goes_;      ///< of every source row: 0 stays, 1 left, 2 right, kGone
   std::vector<LooseContact> loose_;
+
+  std::vector<std::int64_t> removed_;  ///< ids that go in the next rebuild, ascending
+  LinkCounts imbalance_;
+  Loss loss_ = Loss::Nothing;
+  bool is_fast_ = false;
 };
 
 extern template class Lane<2>;

@@ -107,7 +107,9 @@ void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extra
               frame_.kick,
               world_->dt,
               {frame_.gravity[0], frame_.gravity[1], frame_.gravity[2]},
-              frame_.local_damping};
+              frame_.local_damping,
+              0.5 * world_->skin / world_->dt,
+              &is_fast_};
   (frame_.local_damping != 0.0 ? world_->kernels.rows_damped : world_->kernels.rows)(rows);
 }
 

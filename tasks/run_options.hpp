@@ -7,6 +7,7 @@
 #include <string>
 
 #include <barchan/comm/tape.hpp>
+#include <barchan/core/departure.hpp>
 #include <barchan/core/model.hpp>
 
 namespace barchan {
@@ -15,6 +16,12 @@ enum class Schedule { Overlap, Sequential };
 /// Who moves messages while chunks run: the workers, between chunks; or a thread that does nothing
 /// else, for ranks with a core to spare.
 enum class Progress { Poll, Thread };
+
+/// Tests: the last rank loses one of these in the first rebuild from `step` on.
+struct LossFault {
+  Loss what = Loss::Nothing;
+  std::int64_t step = 0;
+};
 
 /// How a run is carried out. Nothing in here changes a bit of the result.
 struct RunOptions {
@@ -30,6 +37,7 @@ struct RunOptions {
   double max_delay_seconds = 0.0;      ///< tests: random delays in messages and tasks
   std::uint64_t delay_seed = 0;
   int ranks_per_node = 0;  ///< tests: so many ranks in a row pass for a node; 0: the real nodes
+  LossFault loss;  ///< tests
 };
 
 }  // namespace barchan

@@ -78,8 +78,10 @@ void Strip<Dim>::seed(const ParticleSet& set) {
     for (int l = 0; l < num_lanes(); ++l) body(l);
   };
   exchange_ghosts(one_by_one);
-  for (const auto& lane : lanes_)
+  for (const auto& lane : lanes_) {
     lane->restart_search_seconds();  // setting up is not part of the loop
+    lane->forget_imbalance();
+  }
 }
 
 template <int Dim>

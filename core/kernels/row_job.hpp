@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 namespace barchan {
 
@@ -19,6 +20,9 @@ struct RowJob {
   double kick = 0.0, dt = 0.0;
   double gravity[3] = {};
   double local_damping = 0.0;
+  double most_speed =
+      std::numeric_limits<double>::infinity();  ///< of a component of velocity [m/s]
+  bool* is_fast = nullptr;                      ///< set when a row is faster, or not finite
 };
 
 using RowKernel = void (*)(const RowJob&);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include <barchan/core/kernels/row_job.hpp>
 
 namespace barchan::kernels {
@@ -18,6 +20,9 @@ void advance_rows(const RowJob& job) {
   const double k = job.kick;
   const auto alpha = Q::set(job.local_damping);
   const auto zero = Q::set(0.0);
+  const double most = job.most_speed, any = std::numeric_limits<double>::infinity();
+  const auto limit = Q::of(most, most, Dim == 3 ? most : any, any);
+  auto fast = Q::beyond(zero, zero);
   if constexpr (Dim == 2) {
     const auto gain = Q::of(k, k, 2.0 * k, 0.0), drift = Q::of(job.dt, job.dt, 0.0, 0.0);
     const auto gravity = Q::of(job.gravity[0] * k, job.gravity[1] * k, 0.0, 0.0);
@@ -27,6 +32,7 @@ void advance_rows(const RowJob& job) {
       const auto v = Q::load(x + 4), im = Q::last(v);
       const auto dv = Q::load(f) * (im * gain) + Q::where_positive(im, gravity);
       const auto w = kicked<Q, Damped>(v, dv, alpha);
+      fast = Q::either(fast, Q::beyond(w, limit));
       Q::store(x + 4, w);
       Q::store(x, Q::load(x) + drift * w);
       Q::store(f, zero);
@@ -42,6 +48,7 @@ void advance_rows(const RowJob& job) {
       const auto v = Q::load(x + 4), im = Q::last(v);
       const auto dv = Q::load(f) * (im * gain) + Q::where_positive(im, gravity);
       const auto w = kicked<Q, Damped>(v, dv, alpha);
+      fast = Q::either(fast, Q::beyond(w, limit));
       Q::store(x + 4, w);
       Q::store(x, Q::load(x) + drift * w);
       const auto s = Q::load(u);
@@ -50,6 +57,7 @@ void advance_rows(const RowJob& job) {
       Q::store(f + 4, zero);
     }
   }
+  if (job.is_fast != nullptr && Q::has_any(fast)) *job.is_fast = true;
 }
 
 template <class Q>

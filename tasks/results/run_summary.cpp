@@ -129,6 +129,7 @@ RunSummary summarize(Simulation& simulation, const std::string& deck,
   summary.wall_specs = model.walls;
   summary.walls.assign(simulation.walls().begin(), simulation.walls().end());
   summary.digest = simulation.digest();
+  summary.left = simulation.left_domain();
   summary.interrupted = interrupted;
   const std::string mine = own_numbers(simulation);
   const auto of_ranks = simulation.communicator().gather(mine);

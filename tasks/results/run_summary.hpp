@@ -46,6 +46,7 @@ struct RunSummary {
   std::vector<WallSpec> wall_specs;
   std::vector<WallState> walls;
   std::uint64_t digest = 0;
+  LeftDomain left;
   bool interrupted = false;
 
   [[nodiscard]] double particle_steps_per_second() const;
