@@ -37,7 +37,7 @@ struct RunOptions {
   double max_delay_seconds = 0.0;      ///< tests: random delays in messages and tasks
   std::uint64_t delay_seed = 0;
   int ranks_per_node = 0;  ///< tests: so many ranks in a row pass for a node; 0: the real nodes
-  LossFault loss;  ///< tests
+  LossFault loss;          ///< tests
 };
 
 }  // namespace barchan
