@@ -11,6 +11,7 @@
 #include <barchan/app/restart.hpp>
 #include <barchan/app/summary_table.hpp>
 #include <barchan/app/verdict.hpp>
+#include <barchan/comm/watchdog.hpp>
 #include <barchan/core/checkpoint/checkpoint_folder.hpp>
 #include <barchan/core/error.hpp>
 #include <barchan/core/io/text_file.hpp>
@@ -93,6 +94,10 @@ void advance(Simulation& simulation, RunResults& results, const RunFolder& folde
       progress.clear();
       save_failed(simulation, results, e);
       end_run(simulation.communicator(), with_last_checkpoint(folder, e.what()));
+    } catch (const WaitError& e) {
+      progress.clear();
+      results.log().add(std::string("error: ") + e.what());
+      end_waiting(simulation.communicator(), with_last_checkpoint(folder, e.what()));
     } catch (const std::exception& e) {
       progress.clear();
       results.log().add(std::string("error: ") + e.what());

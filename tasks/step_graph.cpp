@@ -4,7 +4,6 @@
 #include <chrono>
 #include <thread>
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <barchan/comm/clock.hpp>
@@ -293,9 +292,9 @@ void StepGraph<Dim>::poll_until_in(bool may_leave) {
         return lock.owns_lock() && (poll_sides() || (may_leave && arrived_[0]));
       },
       [this] {
-        return fmt::format("halo of this step, from the {}{}{}", arrived_[0] ? "" : "left",
-                           arrived_[0] || arrived_[1] ? "" : " and the ",
-                           arrived_[1] ? "" : "right");
+        if (arrived_[0] || arrived_[1])
+          return strip_.name_of_halo(arrived_[0] ? Side::Right : Side::Left);
+        return strip_.name_of_halo(Side::Left) + ", and " + strip_.name_of_halo(Side::Right);
       });
 }
 

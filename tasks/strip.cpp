@@ -139,11 +139,13 @@ void Strip<Dim>::end_step(bool sends) {
 
 template <int Dim>
 void Strip<Dim>::wait_halo(Side side) {
-  wait_until([&] { return exchange_->poll(side); },
-             [&] {
-               return fmt::format("rank {}: halo message from rank {} ({})", communicator_.rank(),
-                                  neighbours_.rank(side), name_of(side));
-             });
+  wait_until([&] { return exchange_->poll(side); }, [&] { return name_of_halo(side); });
+}
+
+template <int Dim>
+std::string Strip<Dim>::name_of_halo(Side side) const {
+  return fmt::format("rank {}: halo of step {} from rank {} ({})", communicator_.rank(), step,
+                     neighbours_.rank(side), name_of(side));
 }
 
 template <int Dim>

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <barchan/comm/communicator.hpp>
@@ -95,6 +96,9 @@ class Strip {
     return num_migrations_;
   }  ///< particles that left this rank
   [[nodiscard]] std::size_t bytes() const;
+  /// What this rank waits for, as messages say it: "rank 0: halo of step 17 from rank 1 (right)".
+  [[nodiscard]] std::string name_of_halo(Side side) const;
+  std::int64_t step = 0;               ///< for messages
   std::int64_t chunk_pairs = 1 << 14;  ///< pairs per chunk from the next rebuild on
 
  private:

@@ -242,8 +242,13 @@ void Strip<Dim>::wait_bulk(const char* what) {
         return exchange_->poll_bulk();
       },
       [this, what] {
-        return fmt::format("rank {}: {} of rebuild {} from ranks {} and {}", communicator_.rank(),
-                           what, num_rebuilds_, neighbours_.left, neighbours_.right);
+        std::string from;
+        for (const Side side : kSides) {
+          if (!neighbours_.has(side)) continue;
+          from += fmt::format("{} rank {} ({})", from.empty() ? "from" : " or",
+                              neighbours_.rank(side), name_of(side));
+        }
+        return fmt::format("rank {}: {} of step {} {}", communicator_.rank(), what, step, from);
       });
   waits_.in_flight += 1e-9 * static_cast<double>(now_ns() - bulk_begin_);
 }
