@@ -11,9 +11,11 @@
 #include <barchan/app/restart.hpp>
 #include <barchan/app/summary_table.hpp>
 #include <barchan/app/verdict.hpp>
+#include <barchan/comm/watchdog.hpp>
 #include <barchan/core/checkpoint/checkpoint_folder.hpp>
 #include <barchan/core/error.hpp>
 #include <barchan/core/io/text_file.hpp>
+#include <barchan/tasks/exchange_setup.hpp>
 #include <barchan/tasks/results/agree.hpp>
 #include <barchan/tasks/results/run_results.hpp>
 
@@ -92,6 +94,10 @@ void advance(Simulation& simulation, RunResults& results, const RunFolder& folde
       progress.clear();
       save_failed(simulation, results, e);
       end_run(simulation.communicator(), with_last_checkpoint(folder, e.what()));
+    } catch (const WaitError& e) {
+      progress.clear();
+      results.log().add(std::string("error: ") + e.what());
+      end_waiting(simulation.communicator(), with_last_checkpoint(folder, e.what()));
     } catch (const std::exception& e) {
       progress.clear();
       results.log().add(std::string("error: ") + e.what());
@@ -139,6 +145,8 @@ Simulation begin(const Communicator& world, const RunOptions& options, const Loa
 }  // namespace
 
 void run_deck(const Communicator& world, const RunArguments& arguments) {
+  check_exchange(arguments.options.exchange, world);
+  check_exchange(arguments.record, world);
   const RunFolder folder = folder_of(arguments);
   const RestartPoint from = restart_point(world, arguments, folder);
   std::optional<StepLimit> limit;

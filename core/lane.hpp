@@ -117,7 +117,7 @@ class Lane {
   /// Upper bound of a results message until the next rebuild.
   [[nodiscard]] std::size_t max_results_bytes(Side side) const;
   /// Forces of the pairs and bonds of the left cut, after finish_band(Left).
-  [[nodiscard]] std::vector<double> results() const;
+  void results(std::vector<double>& out) const;
   /// Instead of finish_band(Right). @param results  what results() gave on the other side
   void finish_right_band(std::span<const double> results);
 

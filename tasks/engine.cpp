@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <utility>
 
 #include <barchan/comm/clock.hpp>
+#include <barchan/core/error.hpp>
 #include <barchan/tasks/stop_request.hpp>
 
 namespace barchan {
@@ -21,18 +23,35 @@ double now() {
 
 }  // namespace
 
+/// Some exchanges cannot be taken down while a message is on its way.
+template <int Dim>
+Simulation::EngineOf<Dim>::~EngineOf() {
+  if (is_in_step_ || strip_ == nullptr || std::uncaught_exceptions() > 0) return;
+  try {
+    strip_->complete_halo();
+  } catch (const std::exception&) {  // the others are gone
+  }
+}
+
 template <int Dim>
 std::int64_t Simulation::EngineOf<Dim>::run(std::int64_t num_steps) {
   const double begin = now();
   std::int64_t done = 0;
-  for (; done < num_steps && !stopped_; ++done) step();
+  try {
+    for (; done < num_steps && !stopped_; ++done) step();
+  } catch (const AgreedError&) {
+    is_in_step_ = false;  // thrown before the step did anything
+    throw;
+  }
   loop_seconds_ += now() - begin;
   return done;
 }
 
 template <int Dim>
 void Simulation::EngineOf<Dim>::step() {
+  is_in_step_ = true;
   if (trace_) trace_->begin_step(step_);
+  strip_->step = step_;
   if (keeper_) keep_checkpoints();
   update_stage();
   update_lists();
@@ -53,6 +72,7 @@ void Simulation::EngineOf<Dim>::step() {
   if (plates_->needs_forces(world_.walls)) plates_->collect(wall_sums(), step_);
   plates_->move(world_.walls);
   ++step_;
+  is_in_step_ = false;
 }
 
 /// Chunks of about kChunkSeconds, by what the pairs have cost since the last rebuild. No bit
@@ -91,6 +111,7 @@ void Simulation::EngineOf<Dim>::update_lists() {
   for (std::size_t w = 0; w < world_.walls.size(); ++w)
     walls_at_rebuild_[w] = world_.walls[w].point;
   watch_overlap();
+  watch_growth();
   schedule_->rebuilt(step_);
   must_rebuild_ = false;
   rebuild_seconds_ += now() - begin;

@@ -71,6 +71,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   EngineOf(const Model& model, const std::string& checkpoint, MPI_Comm comm,
            const RunOptions& options);
 
+  ~EngineOf() override;
   std::int64_t run(std::int64_t num_steps) override;
   void for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const override;
   void apply_forces(const std::function<Vec3(const OwnedParticle&)>& force) override;
@@ -119,6 +120,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   [[nodiscard]] std::string describe_fastest();
   void note(std::string text, bool is_warning = false);
   void watch_overlap();
+  void watch_growth();
   [[nodiscard]] double wall_distance2() const;
   [[nodiscard]] std::vector<WallSums> wall_sums() const;
   [[nodiscard]] OwnedParticle particle(const ParticleStore<Dim>& store, std::int32_t i) const;
@@ -135,8 +137,10 @@ class Simulation::EngineOf final : public Simulation::Engine {
   bool must_remove_ = false;             ///< particles out of the domain
   double overlap_ = 0.0;                 ///< largest share seen since the last check
   bool has_warned_ = false;              ///< of overlap
+  std::vector<std::size_t> sizes_;       ///< of buffers, as last told
   std::int64_t overlap_watched_at_ = 0;  ///< step
   WorldScale scale_;
+  bool is_in_step_ = false;     ///< or one was not ended
   double chunk_seconds_ = 0.0;  ///< of chunks when they were last sized
   std::int64_t chunks_sized_at_ = 0;
   double loop_seconds_ = 0.0, rebuild_seconds_ = 0.0, checkpoint_seconds_ = 0.0;

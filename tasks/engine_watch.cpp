@@ -279,6 +279,41 @@ void Simulation::EngineOf<Dim>::watch_overlap() {
   for (const double share : shares) overlap_ = std::max(overlap_, share);
 }
 
+/// After a rebuild. Buffers grow by themselves; here it is only told, once they have grown by a
+/// quarter.
+template <int Dim>
+void Simulation::EngineOf<Dim>::watch_growth() {
+  std::size_t buffer = 0;
+  const auto tell = [&](std::size_t size, bool is_mine, const auto& describe) {
+    if (buffer == sizes_.size()) sizes_.push_back(size);  // at the start
+    std::size_t& known = sizes_[buffer++];
+    if (size < known + known / 4 + 1) return;
+    if (is_mine) note(fmt::format("{} grow from {} to {}", describe(), known, size));
+    known = size;
+  };
+  for (int l = 0; l < strip_->num_lanes(); ++l) {
+    Lane<Dim>& lane = strip_->lane(l);
+    const auto named = [&](const char* what) {
+      return [this, l, what] {
+        return fmt::format("rank {}, lane {}: {}", communicator_.rank(), l, what);
+      };
+    };
+    std::size_t candidates = 0;
+    for (const auto list : {Lane<Dim>::HeldLow, Lane<Dim>::Owned, Lane<Dim>::HeldHigh})
+      candidates += lane.list(list).i.capacity();
+    for (const auto side : {Lane<Dim>::Left, Lane<Dim>::Right})
+      candidates += lane.band(side).across.i.capacity();
+    tell(lane.store().id.capacity(), true, named("rows of particles and ghosts"));
+    tell(candidates, true, named("candidate pairs"));
+  }
+  if (strip_->exchange() == nullptr) return;
+  const ExchangeStats stats = strip_->exchange()->stats();  // equal on all ranks
+  tell(stats.halo_capacity, communicator_.is_root(),
+       [] { return "all ranks: bytes of a halo slot"; });
+  tell(stats.bulk_capacity, communicator_.is_root(),
+       [] { return "all ranks: bytes of a slot for migration"; });
+}
+
 template <int Dim>
 void Simulation::EngineOf<Dim>::judge_overlap(double share) {
   const LimitSpec& limits = model_.limits;

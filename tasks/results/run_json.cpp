@@ -94,6 +94,7 @@ Json contract_of(const RunSummary& s) {
           {"threads", s.threads},
           {"exchange", s.exchange},
           {"schedule", s.schedule},
+          {"progress", s.progress},
           {"contact_search", s.contact_search},
           {"transport", s.transport},
           {"particles", s.particles},

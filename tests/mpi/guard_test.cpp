@@ -166,7 +166,7 @@ void expect_on_all_ranks(const std::string& error, std::initializer_list<const c
   std::array<char, 1024> first{};
   std::copy_n(error.begin(), std::min(error.size(), first.size() - 1), first.begin());
   MPI_Bcast(first.data(), static_cast<int>(first.size()), MPI_CHAR, 0, MPI_COMM_WORLD);
-  EXPECT_EQ(error.substr(0, first.size() - 1), first.data());
+  EXPECT_EQ(error.substr(0, first.size() - 1), std::string(first.data()));
 }
 
 TEST(Outside, IsAnErrorThatNamesTheParticleUnlessTheModelSaysOtherwise) {
@@ -201,6 +201,68 @@ TEST(Balance, ALostBondIsToldOnEveryRank) {
   RunOptions options = with_threads(1);
   options.loss = {Loss::Bond, 50};
   expect_on_all_ranks(error_of(breaking_plate(2), options), {"1 bond too few"});
+}
+
+/// Notes of all ranks on rank 0.
+std::string notes_of(const Scenario& s, const RunOptions& options, std::uint64_t& digest) {
+  Simulation sim(s.model, s.set, MPI_COMM_WORLD, options);
+  sim.run(s.num_steps);
+  digest = sim.digest();
+  std::string text;
+  for (const Note& note : sim.take_notes()) text += note.text + "\n";
+  std::string all;
+  for (const std::string& piece : sim.communicator().gather(text)) all += piece;
+  return all;
+}
+
+Words digest_of_one_rank(const Scenario& s) {
+  if (!is_root()) return {};
+  Simulation sim(s.model, s.set, MPI_COMM_SELF, with_threads(1));
+  sim.run(s.num_steps);
+  return {sim.digest()};
+}
+
+void expect_growth(const Scenario& s, std::initializer_list<const char*> parts) {
+  const Words expected = from_root(digest_of_one_rank(s));
+  for (const std::string& exchange : exchange_names()) {
+    std::uint64_t digest = 0;
+    const std::string notes = notes_of(s, with_threads(2, exchange), digest);
+    EXPECT_EQ(digest, expected[0]) << s.name << ", exchange " << exchange;
+    if (!is_root() || num_ranks() == 1) continue;
+    for (const char* part : parts)
+      EXPECT_NE(notes.find(part), std::string::npos) << s.name << ", " << exchange << ":\n"
+                                                     << notes;
+  }
+}
+
+/// A thin stream that is stopped by a wall and piles up before it.
+Scenario jet() {
+  Scenario s{"a jet into one strip", plain_model(2, 8.0, 0.6), {}, 1200, {}, true};
+  add_box_walls(s.model);
+  s.model.search.skin = 0.15;
+  add_cloud(s.set, 2, {{0.0, 0.0, 0.0}, {8.0, 0.6, 0.0}, 0.2, 0.05, 0.2, 31});
+  for (ParticleData& p : s.set.particles) p.velocity[0] += 2.5 * (8.0 - p.position[0]);
+  shuffle_ids(s.set, 10);
+  return s;
+}
+
+/// All go to one end and leave the other strips empty.
+Scenario flight_to_one_end() {
+  Scenario s = jet();
+  s.name = "all particles into one strip";
+  s.num_steps = 1500;
+  s.set = {};
+  add_cloud(s.set, 2, {{0.0, 0.0, 0.0}, {8.0, 0.6, 0.0}, 0.3, 0.05, 0.2, 33});
+  for (ParticleData& p : s.set.particles) p.velocity[0] = 3.0 * (8.0 - p.position[0]);
+  return s;
+}
+
+TEST(Growth, AJetIntoOneStripMakesHalosAndListsGrowAndLosesNothing) {
+  expect_growth(jet(), {"candidate pairs grow from"});
+}
+
+TEST(Growth, AllParticlesIntoOneStripMakeRowsGrowAndLoseNothing) {
+  expect_growth(flight_to_one_end(), {"grow from"});
 }
 
 TEST(Watch, OverlapBeyondTheLimitEndsTheRunOnEveryRank) {
