@@ -87,7 +87,7 @@ class Sample {
     seed();
     begin_step();
     lanes_[1]->finish_band(Lane<Dim>::Left);
-    const std::vector<double> sent = lanes_[1]->results();
+    const std::vector<double> sent = returned_forces();
     const auto raw = std::as_bytes(std::span(sent));
     Bytes message(raw.begin(), raw.end());
     change(message);
@@ -118,6 +118,12 @@ class Sample {
   }
 
  private:
+  [[nodiscard]] std::vector<double> returned_forces() {
+    std::vector<double> forces;
+    lanes_[1]->results(forces);
+    return forces;
+  }
+
   static Domain domain() {
     Domain domain;
     domain.hi = Vec3(7.0, Dim == 3 ? 1.5 : 2.4, Dim == 3 ? 1.5 : 0.0);
@@ -204,7 +210,7 @@ class Sample {
     begin_step();
     lanes_[1]->finish_band(Lane<Dim>::Left);
     if (lanes_[0]->band(Lane<Dim>::Right).returns)
-      lanes_[0]->finish_right_band(lanes_[1]->results());
+      lanes_[0]->finish_right_band(returned_forces());
     else
       lanes_[0]->finish_band(Lane<Dim>::Right);
     Bytes right(lanes_[0]->halo_bytes(Lane<Dim>::Right)),
