@@ -10,6 +10,7 @@
 
 #include <barchan/comm/clock.hpp>
 #include <barchan/comm/watchdog.hpp>
+#include <barchan/tasks/thread_order.hpp>
 
 namespace barchan {
 namespace {
@@ -20,6 +21,20 @@ constexpr std::size_t at(Side side) {
 }
 
 constexpr double kSecond = 1e-9;  // in nanoseconds
+
+/// The edge from who starts a step to all of its tasks, which look for their own edges behind it.
+const char begin_of_step = 0;
+
+/// A function for every lane. Nothing is read before the thread has taken it up.
+struct LaneTasks {
+  const std::function<void(int)>& body;
+  char end = 0;  ///< its address is the edge to who waits for all lanes
+
+  void operator()(int l) const {
+    const TaskOrder order(this, &end);
+    body(l);
+  }
+};
 
 }  // namespace
 
@@ -47,16 +62,26 @@ void StepGraph<Dim>::build() {
   graph_ = std::make_unique<tbb::flow::graph>();
   for (int l = 0; l < strip_.num_lanes(); ++l) {
     LaneNodes& n = nodes_.emplace_back();
-    n.chunk = std::make_unique<ChunkNode>(*graph_, tbb::flow::unlimited,
-                                          [this, l](int chunk) { run_chunk(l, chunk); });
+    n.chunk = std::make_unique<ChunkNode>(*graph_, tbb::flow::unlimited, [this, l](int chunk) {
+      tell_acquire(&begin_of_step);
+      run_chunk(l, chunk);
+    });
     // Each waits for two signals: the work before it, and its ghosts.
-    n.left = std::make_unique<BandNode>(*graph_, 2, [this, l](Signal) { run_band(l, Side::Left); });
-    n.right =
-        std::make_unique<BandNode>(*graph_, 2, [this, l](Signal) { run_band(l, Side::Right); });
+    const auto make_band = [this, l](Side side) {
+      return std::make_unique<BandNode>(*graph_, 2, [this, l, side](Signal) {
+        tell_acquire(&begin_of_step);
+        run_band(l, side);
+      });
+    };
+    n.left = make_band(Side::Left);
+    n.right = make_band(Side::Right);
   }
   drain_ = std::make_unique<tbb::flow::function_node<int, Signal>>(
-      *graph_, tbb::flow::unlimited,
-      [this](int) { drain(strip_.num_lanes() == 1 && !arrived_[0]); });
+      *graph_, tbb::flow::unlimited, [this](int) {
+        tell_acquire(&begin_of_step);
+        const TaskOrder order(drain_.get(), graph_.get());
+        drain(strip_.num_lanes() == 1 && !arrived_[0]);
+      });
 }
 
 template <int Dim>
@@ -70,14 +95,15 @@ void StepGraph<Dim>::run(const StepFrame& frame) {
     for (const Side side : kSides) arrived_[at(side)] = !strip_.awaits(side);
     const ProgressThread::Shift shift(driver_.get());
     if (schedule_ == Schedule::Sequential) await_all();
+    tell_release(&begin_of_step);
     for (int l = 0; l < strip_.num_lanes(); ++l) {
       for (const Side side : kSides) {
         if (has_band(l, side) && (!strip_.is_outer(l, side) || arrived_[at(side)])) signal(l, side);
       }
     }
-    for (int l = 0; l < strip_.num_lanes(); ++l)
-      nodes_[static_cast<std::size_t>(l)].chunk->try_put(0);
+    for (int l = 0; l < strip_.num_lanes(); ++l) put(*nodes_[static_cast<std::size_t>(l)].chunk, 0);
     graph_->wait_for_all();
+    tell_acquire(graph_.get());
   });
   end_step();
 }
@@ -144,9 +170,10 @@ GraphShape StepGraph<Dim>::shape() const {
 
 template <int Dim>
 void StepGraph<Dim>::run_chunk(int l, int chunk) {
+  LaneNodes& nodes = nodes_[static_cast<std::size_t>(l)];
+  const TaskOrder order(nodes.chunk.get(), graph_.get());
   const std::int64_t begin = now_ns();
   Lane<Dim>& lane = strip_.lane(l);
-  LaneNodes& nodes = nodes_[static_cast<std::size_t>(l)];
   maybe_delay();
   if (chunk == 0) lane.begin_step(frame_);
   lane.run_chunk(chunk);
@@ -155,7 +182,7 @@ void StepGraph<Dim>::run_chunk(int l, int chunk) {
   if (trace_ != nullptr) trace_->slice(Trace::Slice::Chunk, l, begin, end);
   try_poll();
   if (chunk + 1 < lane.num_chunks()) {
-    nodes.chunk->try_put(chunk + 1);
+    put(*nodes.chunk, chunk + 1);
     return;
   }
   nodes.idle_since = now_ns();
@@ -163,16 +190,17 @@ void StepGraph<Dim>::run_chunk(int l, int chunk) {
   const bool band_drains = strip_.num_lanes() == 1 && has_band(l, Side::Left) && arrived_[0];
   const bool is_last = lanes_left_.fetch_sub(1) == 1;
   if (has_band(l, Side::Left))
-    nodes.left->try_put(Signal());
+    put(*nodes.left, Signal());
   else if (has_band(l, Side::Right))
-    nodes.right->try_put(Signal());
-  if (is_last && !band_drains && !(arrived_[0] && arrived_[1])) drain_->try_put(0);
+    put(*nodes.right, Signal());
+  if (is_last && !band_drains && !(arrived_[0] && arrived_[1])) put(*drain_, 0);
 }
 
 template <int Dim>
 void StepGraph<Dim>::run_band(int l, Side side) {
-  const std::int64_t begin = now_ns();
   LaneNodes& nodes = nodes_[static_cast<std::size_t>(l)];
+  const TaskOrder order(side == Side::Left ? nodes.left.get() : nodes.right.get(), graph_.get());
+  const std::int64_t begin = now_ns();
   maybe_delay();
   {
     std::unique_lock<std::mutex> lock(comm_mutex_, std::defer_lock);
@@ -189,13 +217,13 @@ void StepGraph<Dim>::run_band(int l, Side side) {
   if (trace_ != nullptr)
     trace_->slice(side == Side::Left ? Trace::Slice::LeftBand : Trace::Slice::RightBand, l, begin,
                   end);
-  if (side == Side::Left && has_band(l, Side::Right)) nodes.right->try_put(Signal());
+  if (side == Side::Left && has_band(l, Side::Right)) put(*nodes.right, Signal());
   // A lone worker does this band before it waits for the other side; returned forces are not asked
   // for before it.
   const bool is_waited_for =
       strip_.num_lanes() == 1 || (strip_.is_outer(l, side) && strip_.scheme_returns());
   if (side == Side::Left && is_waited_for && lanes_left_ == 0 && !(arrived_[0] && arrived_[1]))
-    drain_->try_put(0);
+    put(*drain_, 0);
 }
 
 /// @pre comm_mutex_ is held for a band that another rank waits for
@@ -215,7 +243,7 @@ void StepGraph<Dim>::send(int l, Side side) {
 template <int Dim>
 void StepGraph<Dim>::signal(int l, Side side) {
   auto& nodes = nodes_[static_cast<std::size_t>(l)];
-  (side == Side::Left ? nodes.left : nodes.right)->try_put(Signal());
+  put(side == Side::Left ? *nodes.left : *nodes.right, Signal());
 }
 
 template <int Dim>
@@ -339,8 +367,10 @@ template <int Dim>
 void StepGraph<Dim>::for_each_lane(const std::function<void(int)>& body) {
   if (strip_.num_lanes() == 1) return body(0);
   arena_.execute([&] {
-    tbb::parallel_for(
-        0, strip_.num_lanes(), [&](int l) { body(l); }, tbb::simple_partitioner());
+    const LaneTasks tasks{body};
+    tell_release(&tasks);
+    tbb::parallel_for(0, strip_.num_lanes(), tasks, tbb::simple_partitioner());
+    tell_acquire(&tasks.end);
   });
 }
 
