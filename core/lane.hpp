@@ -196,12 +196,13 @@ class Lane {
   struct Block {
     int list = 0;
     std::int64_t begin = 0, end = 0;
-    std::int64_t num_touching = 0;
+    std::int64_t num_packed = 0;
     std::int32_t prefetch_begin = 0,
                  prefetch_end = 0;  ///< rows that blocks before this one have not met
     std::int32_t final_row = 0;     ///< rows before this one are complete after the block
     bool has_extras = false;        ///< bonds, walls or external forces among them
-    bool is_packed = false;         ///< works on its touching pairs, packed to its front
+    bool is_packed = false;         ///< works on pairs that touch or nearly do, packed to its front
+    double packed_until = 0.0;      ///< travel of the lane up to which no other pair can touch [m]
   };
   static constexpr std::int64_t kBlockPairs =
       32 * kBatch;  ///< a block's rows stay in the first cache
@@ -218,11 +219,13 @@ class Lane {
   void run_block(Block& block);
   void prefetch(const Block& block) const;
   void run_touching(Block& block, PairJob pairs);
+  [[nodiscard]] double packing_margin() const;  ///< [m]
   void pack(Block& block, const std::uint8_t* masks);
   [[nodiscard]] bool packs() const {
     return world_->kernels.narrow != nullptr && world_->search == ContactSearchKind::Cells;
   }
-  void finish_rows(std::int32_t begin, std::int32_t end, bool has_extras);
+  /// @param top_speed  raised to a bound of the speed of these rows [m/s]
+  void finish_rows(std::int32_t begin, std::int32_t end, bool has_extras, double& top_speed);
   void replay(Rows rows);
   void compute_bonds(typename BondSet<Dim>::Group group);
   void unbind(std::int32_t bond);
@@ -266,6 +269,8 @@ class Lane {
   SearchSeconds search_seconds_;
   int slab_begin_ = 0, slab_end_ = 0;
   double last_distance2_ = 0.0;  ///< of the last step with the lists before these
+  std::array<double, 3> top_speed_{};  ///< in this step: of either band, of all other rows
+  double step_travel_ = 0.0, travel_ = 0.0;  ///< bounds: of the last step, since the lists were cut
 
   // between begin_rebuild and restore_history
   std::vector<std::int32_t> new_row_;  ///< of every source row; -1: left

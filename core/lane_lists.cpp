@@ -88,6 +88,7 @@ void Lane<Dim>::redirect(PairList& list) const {
 template <int Dim>
 void Lane<Dim>::cut_blocks() {
   blocks_.clear();
+  travel_ = 0.0;
   const std::int32_t first = bands_[Left].rows.end, last = bands_[Right].rows.begin;
   for (int l = 0; l < kNumLists; ++l) {
     const PairList& list = lists_[static_cast<std::size_t>(l)];

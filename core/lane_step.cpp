@@ -41,6 +41,9 @@ PairJob Lane<Dim>::job(PairList& list) const {
 template <int Dim>
 void Lane<Dim>::begin_step(const StepFrame& frame) {
   frame_ = frame;
+  step_travel_ = *std::max_element(top_speed_.begin(), top_speed_.end()) * world_->dt;
+  travel_ += step_travel_;
+  top_speed_ = {};
   if (world_->search == ContactSearchKind::AllPairs) research_owned();
   rows_done_ = bands_[Left].exists ? bands_[Left].rows.end : 0;
   wall_sums_.resize(world_->walls.size());
@@ -71,7 +74,7 @@ void Lane<Dim>::run_block(Block& block) {
     world_->kernels.pairs(pairs);
   }
   if (block.final_row > rows_done_) {
-    finish_rows(rows_done_, block.final_row, block.has_extras);
+    finish_rows(rows_done_, block.final_row, block.has_extras, top_speed_.back());
     rows_done_ = block.final_row;
   }
 }
@@ -87,7 +90,8 @@ void Lane<Dim>::prefetch(const Block& block) const {
 }
 
 template <int Dim>
-void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extras) {
+void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extras,
+                            double& top_speed) {
   if (has_extras || !store_.external.empty()) {
     bonds_.add_to_rows(store_, begin, end);
     const double dt = spring_step(frame_, world_->dt);
@@ -108,7 +112,9 @@ void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extra
               world_->dt,
               {frame_.gravity[0], frame_.gravity[1], frame_.gravity[2]},
               frame_.local_damping};
-  (frame_.local_damping != 0.0 ? world_->kernels.rows_damped : world_->kernels.rows)(rows);
+  const RowKernel advance =
+      frame_.local_damping != 0.0 ? world_->kernels.rows_damped : world_->kernels.rows;
+  top_speed = std::max(top_speed, advance(rows));
 }
 
 template <int Dim>
@@ -162,7 +168,7 @@ void Lane<Dim>::finish_band(Side side) {
   (band.across.result.empty() ? world_->kernels.pairs
                               : world_->kernels.pairs_kept)(job(band.across));
   if (band.ghosts_first) replay(band.rows);
-  finish_rows(band.rows.begin, band.rows.end, true);
+  finish_rows(band.rows.begin, band.rows.end, true, top_speed_[side]);
 }
 
 template <int Dim>

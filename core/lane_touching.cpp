@@ -1,11 +1,12 @@
 #include <algorithm>
-#include <cstring>
+#include <cmath>
 
 #include <barchan/core/lane.hpp>
 
-// Where many candidates do not touch, a block of the owned list works on its touching pairs alone:
-// a narrow phase tells which they are, and pairs, laws and springs are packed to the front of the
-// block. As long as the same pairs touch, nothing is moved.
+// Where many candidates do not touch, a block of the owned list works on those alone that touch or
+// are about to: a narrow phase tells which they are, and pairs, laws and springs are packed to the
+// front of the block. They serve until particles may have come far enough for another pair to touch;
+// one that parted meanwhile has no force and loses its spring, as it would in the whole list.
 //
 //   candidates   | a b c d e f g h | …        springs, unpacked   | a – c – – f g – |
 //   mask         | 1 0 1 0 0 1 1 0 |          springs, packed     | a c f g | …
@@ -33,19 +34,29 @@ bool has_bit(const std::uint8_t* masks, std::int64_t k) {
 
 }  // namespace
 
+// A narrow margin asks for the narrow phase often, a wide one lets more pairs in that do not touch.
+// Over n steps that cost n·margin/skin and 1/n, the best margin is about sqrt(skin · travel of a
+// step).
+template <int Dim>
+double Lane<Dim>::packing_margin() const {
+  return std::sqrt(world_->skin * step_travel_);
+}
+
 template <int Dim>
 void Lane<Dim>::run_touching(Block& block, PairJob pairs) {
-  PairList& list = lists_[Owned];
-  std::array<std::uint8_t, kBlockPairs / kBatch> masks;
-  world_->kernels.narrow(pairs, masks.data());
-  const std::int64_t bytes = (block.end - block.begin) / kBatch;
-  std::uint8_t* known = list.mask.data() + block.begin / kBatch;
-  if (!block.is_packed || std::memcmp(masks.data(), known, static_cast<std::size_t>(bytes)) != 0)
+  if (!block.is_packed || travel_ > block.packed_until) {
+    std::array<std::uint8_t, kBlockPairs / kBatch> masks;
+    const double margin = packing_margin();
+    world_->kernels.narrow(pairs, margin, masks.data());
     pack(block, masks.data());
+    // Both of a pair travel; a little less, for the rounding of positions and sums.
+    block.packed_until = travel_ + 0.499 * margin;
+  }
+  const PairList& list = lists_[Owned];
   pairs.i = pairs.row_i = list.packed_i.data();
   pairs.j = pairs.row_j = list.packed_j.data();
   pairs.code = list.packed_code.data();
-  pairs.end = block.begin + (block.num_touching + kBatch - 1) / kBatch * kBatch;
+  pairs.end = block.begin + (block.num_packed + kBatch - 1) / kBatch * kBatch;
   world_->kernels.pairs(pairs);
 }
 
@@ -73,7 +84,7 @@ void Lane<Dim>::pack(Block& block, const std::uint8_t* masks) {
     }
     old += was ? 1 : 0;
   }
-  block.num_touching = now;
+  block.num_packed = now;
   for (; now % kBatch != 0; ++now) {
     const auto to = static_cast<std::size_t>(block.begin + now);
     list.packed_i[to] = store_.waste();
@@ -92,7 +103,7 @@ void Lane<Dim>::unpack_history() {
     if (!block.is_packed) continue;
     double* springs = lists_[Owned].template springs_of_block<Dim>(block.begin);
     const std::uint8_t* known = lists_[Owned].mask.data() + block.begin / kBatch;
-    std::int64_t a = block.num_touching;
+    std::int64_t a = block.num_packed;
     for (std::int64_t k = block.end - block.begin - 1; k >= 0; --k) {
       if (has_bit(known, k))
         copy_spring<Dim>(springs, --a, springs, k);

@@ -21,6 +21,7 @@ struct RowJob {
   double local_damping = 0.0;
 };
 
-using RowKernel = void (*)(const RowJob&);
+/// Returns an upper bound of the speeds that these rows drifted with [m/s].
+using RowKernel = double (*)(const RowJob&);
 
 }  // namespace barchan

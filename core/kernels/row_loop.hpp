@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 #include <barchan/core/kernels/row_job.hpp>
 
 namespace barchan::kernels {
@@ -14,8 +16,9 @@ template <class Q, bool Damped>
 }
 
 template <class Q, int Dim, bool Damped>
-void advance_rows(const RowJob& job) {
+double advance_rows(const RowJob& job) {
   const double k = job.kick;
+  auto top = Q::set(0.0);
   const auto alpha = Q::set(job.local_damping);
   const auto zero = Q::set(0.0);
   if constexpr (Dim == 2) {
@@ -28,6 +31,7 @@ void advance_rows(const RowJob& job) {
       const auto dv = Q::load(f) * (im * gain) + Q::where_positive(im, gravity);
       const auto w = kicked<Q, Damped>(v, dv, alpha);
       Q::store(x + 4, w);
+      top = Q::max(top, Q::abs(w));
       Q::store(x, Q::load(x) + drift * w);
       Q::store(f, zero);
     }
@@ -43,6 +47,7 @@ void advance_rows(const RowJob& job) {
       const auto dv = Q::load(f) * (im * gain) + Q::where_positive(im, gravity);
       const auto w = kicked<Q, Damped>(v, dv, alpha);
       Q::store(x + 4, w);
+      top = Q::max(top, Q::abs(w));
       Q::store(x, Q::load(x) + drift * w);
       const auto s = Q::load(u);
       Q::store(u, kicked<Q, Damped>(s, Q::load(f + 4) * (im * twist), alpha));
@@ -50,6 +55,10 @@ void advance_rows(const RowJob& job) {
       Q::store(f + 4, zero);
     }
   }
+  alignas(32) double speed[4];
+  Q::store(speed, top);
+  return std::sqrt(speed[0] * speed[0] + speed[1] * speed[1] +
+                   (Dim == 3 ? speed[2] * speed[2] : 0.0));
 }
 
 template <class Q>

@@ -14,6 +14,7 @@ struct Avx2 {
 
   BARCHAN_INLINE Real set(double a) { return Real(_mm256_set1_pd(a)); }
   BARCHAN_INLINE Real sqrt(Real a) { return Real(_mm256_sqrt_pd(__m256d(a))); }
+  BARCHAN_INLINE Real max(Real a, Real b) { return Real(_mm256_max_pd(__m256d(a), __m256d(b))); }
   BARCHAN_INLINE Real abs(Real a) {
     return Real(_mm256_andnot_pd(_mm256_set1_pd(-0.0), __m256d(a)));
   }
