@@ -49,6 +49,7 @@ struct Band {
   bool returns = false;  ///< published scheme: the right-hand side computes the pairs of this cut
   Rows rows;             ///< owned rows that are somebody's ghosts
   CellIndex ghost_cells;
+  Planes planes;  ///< of the higher ones of the pairs across
   PairList across;
 };
 
@@ -204,8 +205,6 @@ class Lane {
     bool is_packed = false;         ///< works on pairs that touch or nearly do, packed to its front
     double packed_until = 0.0;      ///< travel of the lane up to which no other pair can touch [m]
   };
-  static constexpr std::int64_t kBlockPairs =
-      32 * kBatch;  ///< a block's rows stay in the first cache
 
   void queue_links(const CheckpointShare& share,
                    const std::unordered_map<std::int64_t, std::int32_t>& row_of);
@@ -235,6 +234,7 @@ class Lane {
   void cut_blocks();
   void prepare_packing();
   void redirect(PairList& list) const;
+  [[nodiscard]] SearchRule search_rule() const;
   void find_owned();
   void list_across(Side side);
   void list_bonded();
@@ -247,21 +247,19 @@ class Lane {
   void place(std::int32_t a, std::int32_t b, const double* spring_a_to_b);
   void collect_loose(std::vector<std::vector<LooseContact>>& leaving,
                      const std::vector<std::int8_t>& goes, const std::vector<std::int32_t>& number);
-  void carry_owned();
-  void gather_rows(const std::vector<std::int32_t>& source);
 
   World<Dim>* world_;
   StepFrame frame_;
-  Store store_, spare_;
-  std::array<PairList, kNumLists> lists_, old_lists_;
+  Store store_;
+  std::array<PairList, kNumLists> lists_;
   std::array<Band, 2> bands_;
-  std::array<PairList, 2> old_across_;
   BondSet<Dim> bonds_;
   BondedPairs bonded_;
   WallContacts<Dim> walls_;
   std::vector<WallContact<Dim>> old_walls_;
   std::vector<WallSums> wall_sums_;
   CellIndex cells_;
+  Planes planes_;
   std::vector<std::int64_t> row_begin_;
   std::vector<Block> blocks_;
   std::vector<int> chunks_{0};  ///< first block of each chunk, and the end
@@ -271,6 +269,18 @@ class Lane {
   double last_distance2_ = 0.0;  ///< of the last step with the lists before these
   std::array<double, 3> top_speed_{};  ///< in this step: of either band, of all other rows
   double step_travel_ = 0.0, travel_ = 0.0;  ///< bounds: of the last step, since the lists were cut
+
+  /// A contact's spring while lists are made anew, by the rows that it had before.
+  struct KeptContact {
+    std::int32_t i = 0, j = 0;
+    double spring[L::kSprings] = {};
+  };
+  std::vector<KeptContact> kept_;  ///< sorted by (i, j)
+
+  static void keep(const PairList& list, std::int64_t k, std::vector<KeptContact>& to);
+  static void keep_springs(const PairList& list, std::vector<KeptContact>& to);
+  /// Springs of pairs that are in both; takes what it has passed from the front of `kept`.
+  void put_springs(PairList& list, std::span<const KeptContact>& kept) const;
 
   // between begin_rebuild and restore_history
   std::vector<std::int32_t> new_row_;  ///< of every source row; -1: left

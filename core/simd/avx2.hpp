@@ -32,6 +32,7 @@ struct Avx2 {
   BARCHAN_INLINE bool any(Mask m) { return _mm256_movemask_pd(m) != 0; }
   BARCHAN_INLINE unsigned bits(Mask m) { return static_cast<unsigned>(_mm256_movemask_pd(m)); }
 
+  BARCHAN_INLINE Real load_unaligned(const double* p) { return Real(_mm256_loadu_pd(p)); }
   BARCHAN_INLINE Real load(const double* p) { return Real(_mm256_load_pd(p)); }
   BARCHAN_INLINE void store(double* p, Real a) { _mm256_store_pd(p, __m256d(a)); }
 
