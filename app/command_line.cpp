@@ -56,7 +56,12 @@ void add_settings(CLI::App& command, std::vector<std::string>& settings) {
       ->allow_extra_args(false);
 }
 
-void add_run(CLI::App& root, RunArguments& run, std::string& schedule, std::string& search) {
+struct Words {
+  std::string schedule, search, progress;
+};
+
+void add_run(CLI::App& root, RunArguments& run, Words& words) {
+  auto& [schedule, search, progress] = words;
   CLI::App& command = *root.add_subcommand("run", "Run a deck and write its results into a folder");
   command.add_option("deck", run.deck, "The deck, a TOML file")->required()->type_name("DECK");
   command
@@ -80,12 +85,19 @@ void add_run(CLI::App& root, RunArguments& run, std::string& schedule, std::stri
       ->check(CLI::Range(1, 1024));
   command
       .add_option("--exchange", run.options.exchange,
-                  "How ranks exchange halos; default: " + exchange_choices().front())
-      ->check(one_of(with_replay(exchange_choices())));
+                  "How ranks exchange halos: " + listed(with_replay(exchange_choices())) +
+                      ", or A+B for A within a node and B between nodes; default: " +
+                      exchange_choices().front())
+      ->type_name("NAME");
   command
       .add_option("--record", run.record,
                   "With --exchange replay: the exchange of the recorded run; default: auto")
-      ->check(one_of(exchange_choices()));
+      ->type_name("NAME");
+  command
+      .add_option("--progress", progress,
+                  "Who moves messages: the workers between chunks, 'poll' (default), or a 'thread' "
+                  "of its own, for ranks with a core to spare")
+      ->check(one_of({"poll", "thread"}));
   command
       .add_option("--schedule", schedule,
                   "Overlap communication with work (default), or one after the other")
@@ -109,12 +121,12 @@ void add_probe(CLI::App& root, ProbeArguments& probe) {
   CLI::App& command = *root.add_subcommand(
       "probe", "Under mpirun: measure every exchange between neighbouring ranks");
   command.add_option("--exchange", probe.options.exchanges, "Only these exchanges; default: all")
-      ->check(one_of(exchange_names()))
+      ->type_name("NAME")
       ->delimiter(',');
   command.add_option("--bytes", probe.options.sizes, "Sizes of messages; default: 64 B to 1 MiB")
       ->type_name("N")
       ->delimiter(',')
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 26));
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 48));
   command
       .add_option("--seconds", probe.options.budget_seconds,
                   "For each measurement, five of which make a line; default: 0.05")
@@ -203,8 +215,8 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   root.require_subcommand(1);
   root.fallthrough(false);
   root.set_version_flag("--version", "barchan " + version());
-  std::string schedule, search;
-  add_run(root, line.run, schedule, search);
+  Words words;
+  add_run(root, line.run, words);
   add_probe(root, line.probe);
   add_others(root, line);
   for (CLI::App* command : root.get_subcommands({}))
@@ -222,10 +234,11 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     return line;
   }
   line.kind = kind_of(root);
-  if (schedule == "sequential") line.run.options.schedule = Schedule::Sequential;
-  if (!search.empty())
+  if (words.schedule == "sequential") line.run.options.schedule = Schedule::Sequential;
+  if (words.progress == "thread") line.run.options.progress = Progress::Thread;
+  if (!words.search.empty())
     line.run.options.search =
-        search == "cells" ? ContactSearchKind::Cells : ContactSearchKind::AllPairs;
+        words.search == "cells" ? ContactSearchKind::Cells : ContactSearchKind::AllPairs;
   return line;
 }
 

@@ -53,8 +53,10 @@ RestartPoint restart_point(const Communicator& world, const RunArguments& argume
   return point;
 }
 
-void print_checkpoint_warnings(Simulation& simulation, Progress& progress) {
-  const auto warnings = simulation.take_checkpoint_warnings();
+void print_warnings(Simulation& simulation, RunResults& results, Progress& progress) {
+  auto warnings = simulation.take_checkpoint_warnings();
+  for (const std::string& warning : warnings) results.log().add("warning: " + warning);
+  for (std::string& warning : results.log().take_warnings()) warnings.push_back(std::move(warning));
   if (!warnings.empty()) progress.clear();
   for (const std::string& warning : warnings)
     std::fprintf(stderr, "barchan: warning: %s\n", warning.c_str());

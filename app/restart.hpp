@@ -6,6 +6,7 @@
 #include <barchan/app/progress.hpp>
 #include <barchan/tasks/checkpoint_load.hpp>
 #include <barchan/tasks/results/run_folder.hpp>
+#include <barchan/tasks/results/run_results.hpp>
 
 namespace barchan::app {
 
@@ -21,7 +22,8 @@ struct RestartPoint {
 [[nodiscard]] RestartPoint restart_point(const Communicator& world, const RunArguments& arguments,
                                          const RunFolder& folder);
 
-/// Tells on stderr which checkpoints could not be written, if any. Rank 0 has something to tell.
-void print_checkpoint_warnings(Simulation& simulation, Progress& progress);
+/// Tells on stderr what the log warns of, and which checkpoints could not be written, if any.
+/// Rank 0 has something to tell.
+void print_warnings(Simulation& simulation, RunResults& results, Progress& progress);
 
 }  // namespace barchan::app

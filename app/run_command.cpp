@@ -11,8 +11,11 @@
 #include <barchan/app/restart.hpp>
 #include <barchan/app/summary_table.hpp>
 #include <barchan/app/verdict.hpp>
+#include <barchan/comm/watchdog.hpp>
+#include <barchan/core/checkpoint/checkpoint_folder.hpp>
 #include <barchan/core/error.hpp>
 #include <barchan/core/io/text_file.hpp>
+#include <barchan/tasks/exchange_setup.hpp>
 #include <barchan/tasks/results/agree.hpp>
 #include <barchan/tasks/results/run_results.hpp>
 
@@ -57,23 +60,51 @@ LoadedDeck load(const Communicator& world, const RunArguments& arguments,
   return loaded;
 }
 
-std::string with_last_checkpoint(const Simulation& simulation, const std::string& what) {
-  const std::string last = simulation.last_checkpoint();
-  return last.empty() ? what : what + "; the last checkpoint is " + last;
+std::string with_last_checkpoint(const RunFolder& folder, const std::string& what) {
+  const CheckpointFolder checkpoints(folder.file("checkpoints"));
+  try {
+    const auto steps = checkpoints.steps();
+    if (!steps.empty()) return what + "; the last checkpoint is " + checkpoints.complete(steps[0]);
+  } catch (const std::exception&) {  // a folder that cannot be read has nothing to offer
+  }
+  return what;
 }
 
-void advance(Simulation& simulation, RunResults& results, Progress& progress) {
+/// What there is when all ranks stop together: a row, a snapshot, and a checkpoint where the state
+/// is sound. What cannot be written is left out; the error that ended the run is what matters.
+void save_failed(Simulation& simulation, RunResults& results, const AgreedError& error) {
+  results.log().add(std::string("error: ") + error.what());
+  try {
+    if (error.can_go_on()) simulation.save_checkpoint();
+    (void)simulation.finish_checkpoints();
+    results.write_failed();
+  } catch (const std::exception& e) {
+    results.log().add(std::string("error: ") + e.what());
+  }
+}
+
+void advance(Simulation& simulation, RunResults& results, const RunFolder& folder,
+             Progress& progress) {
   const std::int64_t end = simulation.model().time.num_steps;
   while (simulation.step() < end && !simulation.stopped()) {
     const std::int64_t due = std::min(results.next_step(), end) - simulation.step();
     try {
       simulation.run(std::min(due, progress.most_steps()));
+    } catch (const AgreedError& e) {
+      progress.clear();
+      save_failed(simulation, results, e);
+      end_run(simulation.communicator(), with_last_checkpoint(folder, e.what()));
+    } catch (const WaitError& e) {
+      progress.clear();
+      results.log().add(std::string("error: ") + e.what());
+      end_waiting(simulation.communicator(), with_last_checkpoint(folder, e.what()));
     } catch (const std::exception& e) {
       progress.clear();
-      end_run(simulation.communicator(), with_last_checkpoint(simulation, e.what()));
+      results.log().add(std::string("error: ") + e.what());
+      end_run(simulation.communicator(), with_last_checkpoint(folder, e.what()));
     }
     progress.update();
-    print_checkpoint_warnings(simulation, progress);
+    print_warnings(simulation, results, progress);
     results.write();
   }
   progress.clear();
@@ -90,11 +121,11 @@ void write_graph(const Simulation& simulation, const std::string& path) {
 
 /// The last state, where checkpoints are wanted or the run was interrupted. Before the results: a
 /// signal may leave little time.
-void save_last(Simulation& simulation, Progress& progress, bool interrupted) {
+void save_last(Simulation& simulation, RunResults& results, Progress& progress, bool interrupted) {
   const CheckpointSpec& spec = simulation.model().checkpoint;
   if (interrupted || spec.every_steps > 0 || spec.every_seconds > 0.0) simulation.save_checkpoint();
   const bool is_saved = simulation.finish_checkpoints();
-  print_checkpoint_warnings(simulation, progress);
+  print_warnings(simulation, results, progress);
   if (!is_saved && interrupted)
     throw RunError("the run was interrupted and its last state could not be saved");
 }
@@ -114,6 +145,8 @@ Simulation begin(const Communicator& world, const RunOptions& options, const Loa
 }  // namespace
 
 void run_deck(const Communicator& world, const RunArguments& arguments) {
+  check_exchange(arguments.options.exchange, world);
+  check_exchange(arguments.record, world);
   const RunFolder folder = folder_of(arguments);
   const RestartPoint from = restart_point(world, arguments, folder);
   std::optional<StepLimit> limit;
@@ -132,9 +165,9 @@ void run_deck(const Communicator& world, const RunArguments& arguments) {
   loaded.particles = {};
 
   Progress progress(simulation, arguments.quiet);
-  advance(simulation, results, progress);
+  advance(simulation, results, folder, progress);
   const bool interrupted = simulation.step() < model.time.num_steps;
-  save_last(simulation, progress, interrupted);
+  save_last(simulation, results, progress, interrupted);
   const RunSummary summary = results.finish(interrupted);
   if (arguments.options.trace) simulation.write_trace(folder.file("trace.json"));
   if (world.is_root() && !arguments.quiet) print_summary(summary, folder, model);

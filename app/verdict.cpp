@@ -7,6 +7,7 @@
 #include <thread>
 
 #include <barchan/app/command_line.hpp>
+#include <barchan/comm/watchdog.hpp>
 #include <barchan/core/error.hpp>
 #include <barchan/tasks/results/agree.hpp>
 
@@ -43,6 +44,9 @@ int with_verdict(const Communicator* world, const std::function<void()>& work) {
     return kWrongInput;
   } catch (const std::bad_alloc&) {
     return fail(world, "out of memory");
+  } catch (const WaitError& e) {
+    if (world == nullptr) return fail(world, e.what());
+    end_waiting(*world, e.what());
   } catch (const std::exception& e) {
     return fail(world, e.what());
   }
@@ -51,6 +55,12 @@ int with_verdict(const Communicator* world, const std::function<void()>& work) {
 void end_run(const Communicator& world, const std::string& what) {
   if (world.size() > 1) fail(&world, what);
   throw RunError(what);
+}
+
+void end_waiting(const Communicator& world, const std::string& what) {
+  print_error(what);
+  std::this_thread::sleep_for(kTurn);  // so that the others can say theirs
+  world.abort(kFailed);
 }
 
 void on_rank_zero(const Communicator& world, const std::function<void()>& work) {

@@ -20,6 +20,10 @@ int with_verdict(const Communicator* world, const std::function<void()>& work);
 /// others; alone it throws RunError. For errors inside the time loop.
 [[noreturn]] void end_run(const Communicator& world, const std::string& what);
 
+/// The same after a WaitError: every rank that waits says what it waits for, so that the one that
+/// hangs can be told from those that wait for it in turn.
+[[noreturn]] void end_waiting(const Communicator& world, const std::string& what);
+
 /// Does local work on rank 0 alone; every rank throws what it threw. Collective.
 void on_rank_zero(const Communicator& world, const std::function<void()>& work);
 

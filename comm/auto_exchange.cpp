@@ -42,8 +42,10 @@ ExchangeCandidate measure(const std::string& name, const Communicator& communica
   return candidate;
 }
 
+/// Between all ranks; a mix needs what its far part needs.
 bool needs_window(const std::string& name) {
-  return name == "put-flag" || name == "put-inband" || name == "get" || name == "pscw";
+  const std::string far = name.substr(name.find('+') + 1);
+  return far == "put-flag" || far == "put-inband" || far == "get" || far == "pscw";
 }
 
 /// The preferred among those that are as good as the best.
@@ -77,9 +79,16 @@ std::string reason_for(const ExchangeChoice& choice, const ExchangeCandidate& be
 
 }  // namespace
 
-const std::vector<std::string>& auto_candidates() {
-  // Not pscw, which takes eight windows and has not been found best anywhere.
-  static const std::vector<std::string> names{"shared", "put-inband", "put-flag", "get", "isend"};
+std::vector<std::string> auto_candidates(const Links& links) {
+  std::vector<std::string> names{"put-inband", "put-flag", "get", "pscw", "isend"};
+  if (!links.are_of_both_kinds()) {
+    names.insert(names.begin(), "shared");
+    return names;
+  }
+  // Within a node shared memory has always been cheapest.
+  std::vector<std::string> mixes{"shared+put-inband", "shared+put-flag", "shared+get",
+                                 "shared+isend"};
+  names.insert(names.begin(), mixes.begin(), mixes.end());
   return names;
 }
 
@@ -94,7 +103,8 @@ SelectedExchange select_exchange(const Communicator& communicator, Neighbours ne
   choice.is_measured = true;
   choice.bytes = bytes;
   choice.work = work;
-  for (const std::string& name : auto_candidates()) {
+  const Links links = count_links(communicator, neighbours, options.ranks_per_node);
+  for (const std::string& name : auto_candidates(links)) {
     if (needs_window(name) && !choice.hint.empty()) {  // what one lacks, all lack
       choice.candidates.push_back({name, choice.hint});
       continue;

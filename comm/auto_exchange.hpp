@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <barchan/comm/exchange.hpp>
+#include <barchan/comm/links.hpp>
 #include <barchan/comm/probe.hpp>
 
 namespace barchan {
@@ -35,8 +36,9 @@ struct SelectedExchange {
   ExchangeChoice choice;
 };
 
-/// Names that choose_exchange measures, in order of preference among equals.
-[[nodiscard]] const std::vector<std::string>& auto_candidates();
+/// Names that select_exchange measures, in order of preference among equals: where some neighbours
+/// share a node and others do not, mixes too. The blocking ones hide nothing and are left out.
+[[nodiscard]] std::vector<std::string> auto_candidates(const Links& links);
 
 /// Measures the exchanges that do not block, on the real neighbours, for under a second in all, and
 /// makes the one that adds least to a step with this work. Within 10 % or half a microsecond of the

@@ -3,8 +3,8 @@
 #include <limits>
 
 #include <barchan/comm/clock.hpp>
+#include <barchan/comm/links.hpp>
 #include <barchan/comm/mpi_error.hpp>
-#include <barchan/comm/probe.hpp>
 
 namespace barchan {
 namespace {

@@ -92,6 +92,14 @@ void Communicator::abort(int status) const {
   std::abort();
 }
 
+Communicator Communicator::split(int group) const {
+  MPI_Comm part = MPI_COMM_NULL;
+  check(MPI_Comm_split(comm_, group, rank_, &part), "MPI_Comm_split");
+  Communicator mine(part);
+  check(MPI_Comm_free(&part), "MPI_Comm_free");
+  return mine;
+}
+
 void Communicator::barrier() const {
   check(MPI_Barrier(comm_), "MPI_Barrier");
 }

@@ -47,6 +47,8 @@ class Communicator {
 
   // Collective.
   [[nodiscard]] Communicator duplicate() const { return Communicator(comm_); }
+  /// The ranks that gave the same `group`, in their order here.
+  [[nodiscard]] Communicator split(int group) const;
   void barrier() const;
   void bcast(std::span<std::byte> bytes, int root = 0) const;  ///< same length on every rank
   [[nodiscard]] std::string bcast(std::string text,

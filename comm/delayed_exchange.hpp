@@ -25,6 +25,7 @@ class DelayedExchange final : public Exchange {
   std::span<const std::byte> received(Side side) const override { return inner_->received(side); }
   void release(Side side) override;
   void begin_bulk(std::span<const std::byte> to_left, std::span<const std::byte> to_right) override;
+  void progress() override { inner_->progress(); }
   bool poll_bulk() override;
   std::vector<std::byte>& bulk(Side side) override { return inner_->bulk(side); }
   ExchangeStats stats() const override { return inner_->stats(); }

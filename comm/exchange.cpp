@@ -5,6 +5,8 @@
 
 #include <barchan/comm/delayed_exchange.hpp>
 #include <barchan/comm/exchanges/all.hpp>
+#include <barchan/comm/mixed_exchange.hpp>
+#include <barchan/core/deck/nearest.hpp>
 #include <barchan/core/error.hpp>
 
 namespace barchan {
@@ -33,31 +35,68 @@ const Entry& entry_of(std::string_view name) {
   for (const Entry& entry : entries) {
     if (entry.name == name) return entry;
   }
-  std::string known;
-  for (const Entry& entry : entries) known += (known.empty() ? "" : ", ") + std::string(entry.name);
-  throw InputError("unknown exchange '" + std::string(name) + "'", "choose one of: " + known);
+  std::vector<std::string_view> known;
+  std::string all;
+  for (const Entry& entry : entries) {
+    known.push_back(entry.name);
+    all += (all.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  const std::string_view near = deck::nearest(name, known);
+  throw InputError(
+      "unknown exchange '" + std::string(name) + "'",
+      (near.empty() ? "" : "did you mean '" + std::string(near) + "'? ") + "there are: " + all);
+}
+
+std::unique_ptr<Exchange> make_plain(std::string_view name, const Communicator& communicator,
+                                     Neighbours neighbours, const ExchangeOptions& options) {
+  std::unique_ptr<SlotExchange> exchange = entry_of(name).make(communicator, neighbours);
+  exchange->start({options.halo_bytes, options.bulk_bytes});
+  return exchange;
 }
 
 }  // namespace
 
 std::unique_ptr<Exchange> make_exchange(std::string_view name, const Communicator& communicator,
                                         Neighbours neighbours, const ExchangeOptions& options) {
-  std::unique_ptr<SlotExchange> exchange = entry_of(name).make(communicator, neighbours);
-  exchange->start({options.halo_bytes, options.bulk_bytes});
+  check_exchange_name(name);
+  const auto parts = ExchangeMix::parse(name);
+  std::unique_ptr<Exchange> exchange =
+      parts ? std::make_unique<MixedExchange>(*parts, communicator, neighbours, options, make_plain)
+            : make_plain(name, communicator, neighbours, options);
   if (!(options.max_delay_seconds > 0.0)) return exchange;
   const std::uint64_t seed =
       options.delay_seed * 1000003U + static_cast<std::uint64_t>(communicator.rank());
   return std::make_unique<DelayedExchange>(std::move(exchange), options.max_delay_seconds, seed);
 }
 
+void check_exchange_name(std::string_view name) {
+  const auto parts = ExchangeMix::parse(name);
+  if (!parts) return static_cast<void>(entry_of(name));
+  for (const std::string& part : {parts->near, parts->far}) {
+    if (entry_of(part).name != "fence") continue;
+    throw InputError("exchange 'fence' cannot be mixed with another",
+                     "every fence is one of all ranks; mix two of the others, as in "
+                     "'shared+put-inband'");
+  }
+}
+
+std::string exchanges_here(const Communicator& communicator, Neighbours neighbours) {
+  std::string working, others;
+  for (const Entry& entry : entries) {
+    try {
+      (void)make_plain(entry.name, communicator, neighbours, {});
+      working += (working.empty() ? "" : ", ") + std::string(entry.name);
+    } catch (const InputError& e) {
+      others += "\n  not here: " + std::string(entry.name) + ": " + e.what();
+    }
+  }
+  return working + "; or two of them as A+B, A within a node and B between nodes" + others;
+}
+
 std::vector<std::string> exchange_names() {
   std::vector<std::string> names;
   for (const Entry& entry : entries) names.emplace_back(entry.name);
   return names;
-}
-
-std::string exchange_summary(std::string_view name) {
-  return std::string(entry_of(name).summary);
 }
 
 }  // namespace barchan

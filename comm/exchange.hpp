@@ -23,7 +23,6 @@ struct ExchangeStats {
   std::uint64_t growths = 0;        ///< times that slots grew after construction
   std::uint64_t halo_capacity = 0;  ///< bytes a halo message may have now
   std::uint64_t bulk_capacity = 0;  ///< bytes a fragment may have now
-  double send_seconds = 0.0;        ///< spent inside send(), halo and fragments
   double flight_seconds =
       0.0;  ///< halo: own send until the neighbour's message of that number was noticed
   double bulk_seconds = 0.0;  ///< begin_bulk() until poll_bulk() was true
@@ -94,6 +93,10 @@ class Exchange {
   virtual void begin_bulk(std::span<const std::byte> to_left,
                           std::span<const std::byte> to_right) = 0;
 
+  /// Lets what is under way advance, the neighbours' gets and large sends too; cheap. For a rank
+  /// that has all it needs and still owes others theirs. Never blocks.
+  virtual void progress() {}
+
   /// True when both sides are complete, in and out.
   [[nodiscard]] virtual bool poll_bulk() = 0;
 
@@ -119,9 +122,11 @@ struct ExchangeOptions {
   double max_delay_seconds =
       0.0;  ///< tests: hide arrived messages and hold sends up to this long; 0 = never
   std::uint64_t delay_seed = 0;
+  int ranks_per_node = 0;  ///< tests: so many ranks in a row pass for a node; 0: the real nodes
 };
 
-/// Builds the exchange called `name` on a duplicate of `communicator`. Collective.
+/// Builds the exchange called `name` on a duplicate of `communicator`. Collective. "a+b" is a
+/// between ranks of a node and b between nodes.
 /// Errors, the same on every rank: InputError for an unknown name (with the list), and, with the
 /// remedy, where this MPI or network cannot carry it.
 [[nodiscard]] std::unique_ptr<Exchange> make_exchange(std::string_view name,
@@ -129,10 +134,14 @@ struct ExchangeOptions {
                                                       Neighbours neighbours,
                                                       const ExchangeOptions& options = {});
 
-/// Names that make_exchange takes, the default first.
+/// Names that make_exchange takes, alone or as "a+b"; the default first.
 [[nodiscard]] std::vector<std::string> exchange_names();
 
-/// One line on what the exchange does. Errors: InputError for an unknown name.
-[[nodiscard]] std::string exchange_summary(std::string_view name);
+/// Errors: InputError for a name, or one in "a+b", that make_exchange does not know.
+void check_exchange_name(std::string_view name);
+
+/// Which exchanges work between these ranks, and why the others do not; for people. Makes each of
+/// them. Collective; the same on every rank.
+[[nodiscard]] std::string exchanges_here(const Communicator& communicator, Neighbours neighbours);
 
 }  // namespace barchan

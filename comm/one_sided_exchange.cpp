@@ -1,7 +1,5 @@
 #include <barchan/comm/one_sided_exchange.hpp>
 
-#include <barchan/comm/mpi_error.hpp>
-
 namespace barchan {
 
 void OneSidedExchange::allocate(SlotCapacity capacity) {
@@ -24,11 +22,8 @@ void OneSidedExchange::put_word(const MessageKey& key, std::uint64_t value) {
               layout_.word(SlotLayout::at_receiver(key)));
 }
 
-void OneSidedExchange::progress() const {
-  int is_there = 0;
-  check(MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, communicator().handle(), &is_there,
-                   MPI_STATUS_IGNORE),
-        "MPI_Iprobe");
+void OneSidedExchange::progress() {
+  SlotExchange::progress();
   window_.sync();
 }
 

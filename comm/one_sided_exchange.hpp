@@ -16,6 +16,9 @@ class OneSidedExchange : public SlotExchange {
  public:
   using SlotExchange::SlotExchange;
   std::string_view name() const override = 0;
+  /// Lets the library move what is under way (Open MPI has no progress thread), and makes puts
+  /// visible.
+  void progress() final;
 
  protected:
   void allocate(SlotCapacity capacity) override;
@@ -40,10 +43,6 @@ class OneSidedExchange : public SlotExchange {
   }
   /// Puts `value` into the receiver's word for this message; not flushed.
   void put_word(const MessageKey& key, std::uint64_t value);
-
-  /// Lets the library move what is under way (Open MPI has no progress thread), and makes puts
-  /// visible.
-  void progress() const;
 
  private:
   Window window_;

@@ -11,18 +11,6 @@
 namespace barchan {
 namespace {
 
-/// The lowest rank that shares memory with this one.
-std::int64_t node_of(const Communicator& communicator) {
-  MPI_Comm node = MPI_COMM_NULL;
-  check(MPI_Comm_split_type(communicator.handle(), MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node),
-        "MPI_Comm_split_type");
-  std::int64_t lowest = communicator.rank();
-  const int code = MPI_Allreduce(MPI_IN_PLACE, &lowest, 1, MPI_INT64_T, MPI_MIN, node);
-  check(MPI_Comm_free(&node), "MPI_Comm_free");
-  check(code, "MPI_Allreduce");
-  return lowest;
-}
-
 void probe_sizes(const Communicator& communicator, Neighbours neighbours, const std::string& name,
                  const ProbeOptions& options, ProbeReport& report) {
   ExchangeOptions first;
@@ -54,25 +42,6 @@ std::string window_component(const Communicator& communicator) {
 
 }  // namespace
 
-std::vector<std::int64_t> nodes_of_ranks(const Communicator& communicator) {
-  std::vector<std::int64_t> nodes(static_cast<std::size_t>(communicator.size()), 0);
-  nodes[static_cast<std::size_t>(communicator.rank())] = node_of(communicator);
-  communicator.allreduce_sum(std::span<std::int64_t>(nodes));
-  return nodes;
-}
-
-Links count_links(const Communicator& communicator, Neighbours neighbours) {
-  const auto nodes = nodes_of_ranks(communicator);
-  std::int64_t counts[2] = {};
-  if (neighbours.has(Side::Right)) {
-    counts[0] = 1;
-    counts[1] = nodes[static_cast<std::size_t>(neighbours.right)] ==
-                nodes[static_cast<std::size_t>(communicator.rank())];
-  }
-  communicator.allreduce_sum(std::span<std::int64_t>(counts));
-  return {static_cast<int>(counts[0]), static_cast<int>(counts[1])};
-}
-
 ProbeReport probe_exchanges(const Communicator& communicator, const ProbeOptions& options) {
   if (communicator.size() < 2) {
     throw InputError("a probe needs at least two ranks",
@@ -87,7 +56,7 @@ ProbeReport probe_exchanges(const Communicator& communicator, const ProbeOptions
   report.num_links = links.all;
   report.num_on_node = links.on_node;
   const auto names = options.exchanges.empty() ? exchange_names() : options.exchanges;
-  for (const std::string& name : names) (void)exchange_summary(name);  // unknown ones first
+  for (const std::string& name : names) check_exchange_name(name);  // unknown ones first
   if (!report.window.empty()) probe_plain_put(communicator, options, report);
   for (const std::string& name : names) {
     try {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <barchan/comm/exchange.hpp>
+#include <barchan/comm/links.hpp>
 
 namespace barchan {
 
@@ -106,15 +107,5 @@ struct ProbeOptions {
 /// Errors: InputError for one rank only, or an unknown exchange.
 [[nodiscard]] ProbeReport probe_exchanges(const Communicator& communicator,
                                           const ProbeOptions& options = {});
-
-/// For each rank a number that ranks share when they share memory: the lowest rank of their node.
-/// Collective.
-[[nodiscard]] std::vector<std::int64_t> nodes_of_ranks(const Communicator& communicator);
-
-/// How many pairs of neighbours there are, and how many of them share a node. Collective.
-struct Links {
-  int all = 0, on_node = 0;
-};
-[[nodiscard]] Links count_links(const Communicator& communicator, Neighbours neighbours);
 
 }  // namespace barchan

@@ -5,6 +5,8 @@
 #include <string>
 
 #include <barchan/comm/clock.hpp>
+#include <barchan/comm/memory_left.hpp>
+#include <barchan/comm/mpi_error.hpp>
 #include <barchan/core/error.hpp>
 
 namespace barchan {
@@ -25,7 +27,23 @@ SlotExchange::SlotExchange(const Communicator& communicator, Neighbours neighbou
 void SlotExchange::start(SlotCapacity capacity) {
   capacity_ = {round_to_line(capacity.halo),
                round_to_line(std::max<std::size_t>(capacity.bulk, 64))};
+  require_room(capacity_);
   allocate(capacity_);
+}
+
+// Memory that is not there is often granted, and missed only when it is touched.
+void SlotExchange::require_room(SlotCapacity capacity) const {
+  constexpr double slots = 8.0, most = 2147483647.0;  // both ways; one MPI call moves so much
+  const double halo = static_cast<double>(capacity.halo), bulk = static_cast<double>(capacity.bulk);
+  const double needed = slots * (halo + bulk);
+  const bool fits =
+      std::max(halo, bulk) + 128.0 <= most && needed * communicator_.node_size() <= memory_left();
+  if (communicator_.all_of(fits)) return;
+  throw InputError("messages of " + std::to_string(capacity.halo) + " bytes take " +
+                       std::to_string(static_cast<std::int64_t>(needed / 1048576.0)) +
+                       " MiB on every rank, which is more than this node has left or one MPI call "
+                       "moves (2 GiB)",
+                   "use smaller messages: more ranks, or for `barchan probe` a smaller --bytes");
 }
 
 void SlotExchange::reserve(std::size_t bytes) {
@@ -35,6 +53,7 @@ void SlotExchange::reserve(std::size_t bytes) {
       throw std::logic_error("Exchange::reserve: a message is in flight");
     }
   }
+  require_room({bytes + bytes / 2, capacity_.bulk});
   retire();
   std::int64_t largest_bulk = static_cast<std::int64_t>(largest_bulk_);
   communicator_.allreduce_max(std::span(&largest_bulk, 1));  // also: everybody has retired
@@ -87,7 +106,6 @@ void SlotExchange::post_message(Lane lane, Side side, bool has_more) {
   header.has_more = has_more ? 1 : 0;
   mine.is_packing = false;
   post({lane, side, header.number}, header);
-  stats_.send_seconds += seconds_since(begin);
   if (lane == Lane::Halo) halo_times_[index(side)].sent = begin;
 }
 
@@ -209,6 +227,13 @@ void SlotExchange::advance_bulk(Side side) {
   } else {
     mine.is_done = true;
   }
+}
+
+void SlotExchange::progress() {
+  int is_there = 0;
+  check(
+      MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, communicator_.handle(), &is_there, MPI_STATUS_IGNORE),
+      "MPI_Iprobe");
 }
 
 bool SlotExchange::poll_bulk() {

@@ -44,12 +44,14 @@ class SlotExchange : public Exchange {
   std::span<const std::byte> received(Side side) const final;
   void release(Side side) final;
   void begin_bulk(std::span<const std::byte> to_left, std::span<const std::byte> to_right) final;
+  void progress() override;
   bool poll_bulk() final;
   std::vector<std::byte>& bulk(Side side) final { return bulk_sides_[index(side)].in; }
   ExchangeStats stats() const final;
   HaloTimes halo_times(Side side) const final { return halo_times_[index(side)]; }
 
-  /// First slots; collective. make_exchange calls it once.
+  /// First slots; collective. make_exchange calls it once. Errors, the same on every rank:
+  /// InputError for slots that do not fit into memory.
   void start(SlotCapacity capacity);
 
  protected:
@@ -105,6 +107,7 @@ class SlotExchange : public Exchange {
     return tracks_[index(MessageKey{lane, side, 0})];
   }
   void require_neighbour(Side side, const char* what) const;
+  void require_room(SlotCapacity capacity) const;
   std::byte* open_outbox(Lane lane, Side side, std::size_t bytes);
   void post_message(Lane lane, Side side, bool has_more);
   bool look_for(Lane lane, Side side);

@@ -49,7 +49,7 @@ void Watchdog::expire(const std::string& what) const {
   std::ostringstream text;
   text << "waited " << seconds() << " s in vain for " << what
        << "; another rank may have died or hang (the limit is BARCHAN_WAIT_LIMIT, in seconds)";
-  throw RunError(text.str());
+  throw WaitError(text.str());
 }
 
 }  // namespace barchan

@@ -4,6 +4,7 @@
 #include <string>
 
 #include <barchan/comm/backoff.hpp>
+#include <barchan/core/error.hpp>
 
 namespace barchan {
 
@@ -12,6 +13,12 @@ namespace barchan {
 /// `seconds` is not a positive number.
 double wait_limit();
 void set_wait_limit(double seconds);
+
+/// A message that never came. Other ranks may wait as well, each for something else.
+class WaitError : public RunError {
+ public:
+  using RunError::RunError;
+};
 
 /// A wait has a beginning and a limit; when that is over it is reported, never a silent hang.
 class Watchdog {
@@ -26,7 +33,7 @@ class Watchdog {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   }
 
-  /// Throws RunError: "waited 120 s for <what>; …".
+  /// Throws WaitError: "waited 120 s for <what>; …".
   [[noreturn]] void expire(const std::string& what) const;
 
  private:
@@ -39,7 +46,7 @@ class Watchdog {
 /// @param describe  gives the text for a wait that never ends: which rank waits for which message
 /// of which step
 ///                  from whom, as in "rank 2: halo message of step 17 from rank 1 (left)"
-/// Errors: RunError after wait_limit() seconds; the caller then ends all ranks
+/// Errors: WaitError after wait_limit() seconds; the caller then ends all ranks
 /// (Communicator::abort), since the others may wait for this one.
 template <class Poll, class Describe>
 void wait_until(Poll&& poll, Describe&& describe, double limit_seconds = wait_limit()) {

@@ -81,6 +81,8 @@ class BondSet {
   [[nodiscard]] bool is_broken(std::int32_t bond) const {
     return broken_[static_cast<std::size_t>(bond)];
   }
+  /// As broken, but not counted: an end has left the domain. Until drop_broken.
+  void cancel(std::int32_t bond) { broken_[static_cast<std::size_t>(bond)] = 1; }
   void drop_broken();
   [[nodiscard]] std::int64_t num_broken() const {
     return num_broken_;

@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include <barchan/core/bonds.hpp>
 #include <barchan/core/contact_search.hpp>
+#include <barchan/core/departure.hpp>
 #include <barchan/core/grid.hpp>
 #include <barchan/core/kernels/kernel_set.hpp>
 #include <barchan/core/pair_list.hpp>
@@ -59,8 +61,9 @@ struct Measures {
   ExactSum momentum[3];                      ///< [N·s]
   std::int64_t contacts = 0;                 ///< touching pairs without a bond, each once
   std::int64_t bonds = 0, broken_bonds = 0;
-  double max_overlap = 0.0;  ///< [m], with particles or walls
-  double max_speed = 0.0;    ///< [m/s]
+  double max_overlap = 0.0;        ///< [m], with particles or walls
+  double max_overlap_share = 0.0;  ///< of the smaller radius
+  double max_speed = 0.0;          ///< [m/s]
   void add(const Measures& other);
 };
 
@@ -114,9 +117,31 @@ class Lane {
   /// Upper bound of a results message until the next rebuild.
   [[nodiscard]] std::size_t max_results_bytes(Side side) const;
   /// Forces of the pairs and bonds of the left cut, after finish_band(Left).
-  [[nodiscard]] std::vector<double> results() const;
+  void results(std::vector<double>& out) const;
   /// Instead of finish_band(Right). @param results  what results() gave on the other side
   void finish_right_band(std::span<const double> results);
+
+  // ---- particles that left the domain (lane_outside.cpp), between steps
+  /// Owned particles out of the domain, in canonical order.
+  [[nodiscard]] std::vector<Departure> outside(std::int64_t step) const;
+  /// These particles, of any lane, go in the begin_rebuild that follows, with their contacts and
+  /// bonds. @param ids  ascending. @return how many of those this lane counts
+  LinkCounts remove(std::span<const std::int64_t> ids);
+
+  // ---- what a run that goes wrong says (lane_watch.cpp), between steps
+  /// A particle moved farther than half the skin in the last step, or is not finite.
+  [[nodiscard]] bool is_fast() const {
+    return std::any_of(speeds_.begin(), speeds_.end(), [](auto s) { return s.is_beyond; });
+  }
+  /// The fastest one; one that is not finite before all others. -1: there is none
+  [[nodiscard]] std::int32_t fastest_row() const;
+  /// What a row touches.
+  struct Partners {
+    std::vector<std::int64_t> ids;
+    std::vector<std::int32_t> walls;
+  };
+  [[nodiscard]] Partners partners(std::int32_t row);
+  [[nodiscard]] WorstOverlap worst_overlap() const;
 
   // ---- the rebuild (lane_rebuild.cpp), in this order
   /// Instead of begin_rebuild at the start of a run: owns these particles and bonds. @pre they lie
@@ -150,6 +175,9 @@ class Lane {
   // ---- between steps, ghosts up to date (lane_measure.cpp)
   [[nodiscard]] Measures measure(const Vec3& gravity);
   [[nodiscard]] Travel travel() const;  ///< since the last rebuild; needs no ghosts
+  /// Lists before these were used with a wall that had moved so far since they were built; the next
+  /// travel() tells when that was too far. After a rebuild.
+  void note_travel(double distance2) { last_distance2_ = std::max(last_distance2_, distance2); }
   [[nodiscard]] std::uint64_t digest() const;
 
   // ---- what others see
@@ -173,8 +201,13 @@ class Lane {
   /// packed.
   void unpack_history();
   [[nodiscard]] std::int64_t num_leaving() const {
-    return std::count_if(goes_.begin(), goes_.end(), [](auto g) { return g != 0; });
+    return std::count_if(goes_.begin(), goes_.end(), [](auto g) { return g == 1 || g == 2; });
   }
+  /// What rebuilds have found too much or too little, since the start: links after them less links
+  /// before them. Summed over all lanes it is zero, or something was lost.
+  [[nodiscard]] const LinkCounts& imbalance() const { return imbalance_; }
+  void lose(Loss what) { loss_ = what; }        ///< tests: one of these, in the next rebuild
+  void forget_imbalance() { imbalance_ = {}; }  ///< the links of the start came from elsewhere
   [[nodiscard]] int slab_begin() const { return slab_begin_; }
   [[nodiscard]] int slab_end() const { return slab_end_; }
   [[nodiscard]] std::int64_t num_pairs() const;
@@ -212,6 +245,14 @@ class Lane {
   /// drift.
   [[nodiscard]] double distance2_of_last_step() const;
   [[nodiscard]] int direction_of(int slab) const;  ///< 0 here, 1 left, 2 right
+  static constexpr std::int8_t kGone = 3;          ///< as a direction: out of the domain
+  [[nodiscard]] bool is_removed(std::int32_t row) const {
+    return !removed_.empty() && std::binary_search(removed_.begin(), removed_.end(),
+                                                   store_.id[static_cast<std::size_t>(row)]);
+  }
+  [[nodiscard]] bool counts_bond(std::int32_t bond) const;
+  /// Whether to lose one of these now.
+  bool loses(Loss what) { return loss_ == what && std::exchange(loss_, Loss::Nothing) == what; }
   [[nodiscard]] bool computes_bond(std::int32_t bond) const;
   [[nodiscard]] std::pair<bool, bool> bond_leaves(std::int32_t bond) const;
   PairJob job(PairList& list) const;
@@ -223,8 +264,7 @@ class Lane {
   [[nodiscard]] bool packs() const {
     return world_->kernels.narrow != nullptr && world_->search == ContactSearchKind::Cells;
   }
-  /// @param top_speed  raised to a bound of the speed of these rows [m/s]
-  void finish_rows(std::int32_t begin, std::int32_t end, bool has_extras, double& top_speed);
+  void finish_rows(std::int32_t begin, std::int32_t end, bool has_extras, RowSpeeds& speeds);
   void replay(Rows rows);
   void compute_bonds(typename BondSet<Dim>::Group group);
   void unbind(std::int32_t bond);
@@ -267,7 +307,7 @@ class Lane {
   SearchSeconds search_seconds_;
   int slab_begin_ = 0, slab_end_ = 0;
   double last_distance2_ = 0.0;  ///< of the last step with the lists before these
-  std::array<double, 3> top_speed_{};  ///< in this step: of either band, of all other rows
+  std::array<RowSpeeds, 3> speeds_{};  ///< in this step: of either band, of all other rows
   double step_travel_ = 0.0, travel_ = 0.0;  ///< bounds: of the last step, since the lists were cut
 
   /// A contact's spring while lists are made anew, by the rows that it had before.
@@ -284,8 +324,12 @@ class Lane {
 
   // between begin_rebuild and restore_history
   std::vector<std::int32_t> new_row_;  ///< of every source row; -1: left
-  std::vector<std::int8_t> goes_;      ///< of every source row: 0 stays, 1 left, 2 right
+  std::vector<std::int8_t> goes_;      ///< of every source row: 0 stays, 1 left, 2 right, kGone
   std::vector<LooseContact> loose_;
+
+  std::vector<std::int64_t> removed_;  ///< ids that go in the next rebuild, ascending
+  LinkCounts imbalance_;
+  Loss loss_ = Loss::Nothing;
 };
 
 extern template class Lane<2>;

@@ -39,11 +39,13 @@ void Lane<Dim>::collect_loose(std::vector<std::vector<LooseContact>>& leaving,
                               const std::vector<std::int32_t>& number) {
   unpack_history();
   kept_.clear();
-  const auto loosen = [&](const PairList& list) {
+  const auto loosen = [&](const PairList& list, bool counts) {
     for (std::int64_t k = 0; k < list.size(); ++k) {
       if (!list.template has_spring<Dim>(k)) continue;
       const std::int32_t ends[2] = {list.i[static_cast<std::size_t>(k)],
                                     list.j[static_cast<std::size_t>(k)]};
+      if (is_removed(ends[0]) || is_removed(ends[1])) continue;
+      if (counts) --imbalance_.contacts;
       const auto leaves = [&](std::int32_t row) {
         return store_.is_owned(row) && goes[static_cast<std::size_t>(row)] != 0;
       };
@@ -56,6 +58,7 @@ void Lane<Dim>::collect_loose(std::vector<std::vector<LooseContact>>& leaving,
       for (int e = 0; e < 2; ++e) {
         if (!store_.is_owned(ends[e])) continue;
         const auto own = static_cast<std::size_t>(ends[e]);
+        if (goes[own] == kGone) continue;
         LooseContact c{ends[e], store_.id[static_cast<std::size_t>(ends[1 - e])], {}};
         for (int q = 0; q < L::kSprings; ++q) {
           const double s = list.template springs<Dim>(k)[q * kBatch];
@@ -70,10 +73,10 @@ void Lane<Dim>::collect_loose(std::vector<std::vector<LooseContact>>& leaving,
       }
     }
   };
-  for (const PairList& list : lists_) loosen(list);
+  for (const PairList& list : lists_) loosen(list, true);
   if (kept_.capacity() > kept_.size() + kept_.size() / 2) kept_.shrink_to_fit();
-  for (const Band& band : bands_) {
-    if (band.exists) loosen(band.across);
+  for (const Side side : {Left, Right}) {
+    if (bands_[side].exists) loosen(bands_[side].across, side == Left);
   }
 }
 
@@ -137,6 +140,9 @@ void Lane<Dim>::place(std::int32_t a, std::int32_t b, const double* spring) {
   if (at.list == nullptr) return;  // no longer a candidate, so out of touch
   if (at.list == &bands_[Right].across && bands_[Right].returns)
     return;  // kept by the right-hand side
+  // What comes from both sides, and what the lane right of a cut counts, is not counted again.
+  const bool counts = at.list != &bands_[Right].across && !at.list->template has_spring<Dim>(at.k);
+  if (counts) ++imbalance_.contacts;
   const bool swapped = at.list->i[static_cast<std::size_t>(at.k)] != a;
   for (int c = 0; c < L::kSprings; ++c)
     at.list->template springs<Dim>(at.k)[c * kBatch] = Dim == 3 && swapped ? -spring[c] : spring[c];
@@ -153,8 +159,10 @@ void Lane<Dim>::keep(const PairList& list, std::int64_t k, std::vector<KeptConta
 
 template <int Dim>
 void Lane<Dim>::restore_history() {
-  for (const KeptContact& c : kept_)
+  for (const KeptContact& c : kept_) {
+    if (loses(Loss::Contact)) continue;
     place(new_row_[static_cast<std::size_t>(c.i)], new_row_[static_cast<std::size_t>(c.j)], c.spring);
+  }
   kept_.clear();
   for (const LooseContact& c : loose_) {
     const std::int32_t row = new_row_[static_cast<std::size_t>(c.handle)];
@@ -164,6 +172,8 @@ void Lane<Dim>::restore_history() {
   loose_.clear();
   bonds_.resolve(store_);
   require_short_bonds(world_->grid, store_, bonds_);
+  for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.bonds().size()); ++b)
+    imbalance_.bonds += counts_bond(b) ? 1 : 0;
 
   walls_.search(store_, world_->wall_specs, world_->walls, world_->skin);
   for (WallContact<Dim>& c : old_walls_) c.row = new_row_[static_cast<std::size_t>(c.row)];
@@ -175,10 +185,13 @@ void Lane<Dim>::restore_history() {
     while (old != old_walls_.end() && std::pair(old->row, old->wall) < std::pair(c.row, c.wall))
       ++old;
     if (old == old_walls_.end()) break;
-    if (old->row == c.row && old->wall == c.wall)
-      std::copy_n(old->spring, int{L::kSprings}, c.spring);
+    if (old->row != c.row || old->wall != c.wall) continue;
+    if (has_spring(*old) && loses(Loss::WallContact)) continue;
+    std::copy_n(old->spring, int{L::kSprings}, c.spring);
+    if (has_spring(c)) ++imbalance_.wall_contacts;
   }
   old_walls_.clear();
+  removed_.clear();
 }
 
 template class Lane<2>;

@@ -15,6 +15,7 @@ void Measures::add(const Measures& other) {
   bonds += other.bonds;
   broken_bonds += other.broken_bonds;
   max_overlap = std::max(max_overlap, other.max_overlap);
+  max_overlap_share = std::max(max_overlap_share, other.max_overlap_share);
   max_speed = std::max(max_speed, other.max_speed);
 }
 
@@ -63,6 +64,8 @@ void measure_pairs(const Lane<Dim>& lane, const PairList& list, Measures& m) {
     for (int c = 0; c < Layout<Dim>::kSprings; ++c) s2 += s[c * kBatch] * s[c * kBatch];
     m.elastic.add(0.5 * (law[LawView::Kn] * overlap * overlap + law[LawView::Kt] * s2));
     m.max_overlap = std::max(m.max_overlap, overlap);
+    m.max_overlap_share =
+        std::max(m.max_overlap_share, overlap / std::min(store.radius(i), store.radius(j)));
     ++m.contacts;
   }
 }
@@ -86,6 +89,7 @@ void measure_wall_contacts(const Lane<Dim>& lane, Measures& m) {
     for (const double s : c.spring) s2 += s * s;
     m.elastic.add(0.5 * (law[LawView::Kn] * overlap * overlap + law[LawView::Kt] * s2));
     m.max_overlap = std::max(m.max_overlap, overlap);
+    m.max_overlap_share = std::max(m.max_overlap_share, overlap / store.radius(c.row));
   }
 }
 

@@ -106,7 +106,8 @@ void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byt
     store_.key[at] = world_->grid.key(store_.x(i));
     goes_[at] = static_cast<std::int8_t>(
         direction_of(static_cast<int>(store_.key[at] / world_->grid.slab_size())));
-    if (goes_[at] == 0) continue;
+    if (is_removed(i) || loses(Loss::Particle)) goes_[at] = kGone;
+    if (goes_[at] == 0 || goes_[at] == kGone) continue;
     auto& out = leavers[static_cast<std::size_t>(goes_[at] - 1)];
     number[at] = static_cast<std::int32_t>(out.size());
     out.push_back(record_of(store_, i));
@@ -119,6 +120,8 @@ void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byt
   old_walls_.clear();
   for (const WallContact<Dim>& c : walls_.list()) {
     const auto at = static_cast<std::size_t>(c.row);
+    if (goes_[at] == kGone) continue;
+    if (has_spring(c)) --imbalance_.wall_contacts;
     if (goes_[at] == 0) {
       old_walls_.push_back(c);
       continue;
@@ -130,6 +133,8 @@ void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byt
   std::array<std::vector<BondRecord<Dim>>, 2> bonds;
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.bonds().size()); ++b) {
     if (bonds_.is_broken(b)) continue;
+    if (counts_bond(b)) --imbalance_.bonds;
+    if (loses(Loss::Bond)) bonds_.cancel(b);
     const auto [left, right] = bond_leaves(b);
     const BondRecord<Dim> record{bonds_.bonds()[static_cast<std::size_t>(b)],
                                  static_cast<std::uint8_t>(computes_bond(b))};

@@ -34,10 +34,10 @@ std::size_t Lane<Dim>::max_results_bytes(Side side) const {
 }
 
 template <int Dim>
-std::vector<double> Lane<Dim>::results() const {
+void Lane<Dim>::results(std::vector<double>& out) const {
   const Band& band = bands_[Left];
   const std::int32_t ghosts = store_.ghost_begin(Left);
-  std::vector<double> out{0.0};
+  out.assign(1, 0.0);
   for (std::int64_t k = 0; k < band.across.size(); ++k) {
     const auto at = static_cast<std::size_t>(k);
     const double* f = band.across.result.data() + at * L::kForce;
@@ -49,7 +49,6 @@ std::vector<double> Lane<Dim>::results() const {
     out[out.size() - L::kForce + kNumberSlot] = ghost - ghosts;
   }
   bonds_.export_group(BondSet<Dim>::Left, out);
-  return out;
 }
 
 template <int Dim>
@@ -76,7 +75,7 @@ void Lane<Dim>::finish_right_band(std::span<const double> results) {
   }
   if (band.ghosts_first) replay(band.rows);
   bonds_.import_group(BondSet<Dim>::Right, store_, f);
-  finish_rows(band.rows.begin, band.rows.end, true, top_speed_[Right]);
+  finish_rows(band.rows.begin, band.rows.end, true, speeds_[Right]);
 }
 
 template class Lane<2>;

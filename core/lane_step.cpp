@@ -41,9 +41,11 @@ PairJob Lane<Dim>::job(PairList& list) const {
 template <int Dim>
 void Lane<Dim>::begin_step(const StepFrame& frame) {
   frame_ = frame;
-  step_travel_ = *std::max_element(top_speed_.begin(), top_speed_.end()) * world_->dt;
+  RowSpeeds all;
+  for (const RowSpeeds& speeds : speeds_) all.add(speeds);
+  step_travel_ = all.top * world_->dt;
   travel_ += step_travel_;
-  top_speed_ = {};
+  speeds_ = {};
   if (world_->search == ContactSearchKind::AllPairs) research_owned();
   rows_done_ = bands_[Left].exists ? bands_[Left].rows.end : 0;
   wall_sums_.resize(world_->walls.size());
@@ -74,7 +76,7 @@ void Lane<Dim>::run_block(Block& block) {
     world_->kernels.pairs(pairs);
   }
   if (block.final_row > rows_done_) {
-    finish_rows(rows_done_, block.final_row, block.has_extras, top_speed_.back());
+    finish_rows(rows_done_, block.final_row, block.has_extras, speeds_.back());
     rows_done_ = block.final_row;
   }
 }
@@ -91,7 +93,7 @@ void Lane<Dim>::prefetch(const Block& block) const {
 
 template <int Dim>
 void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extras,
-                            double& top_speed) {
+                            RowSpeeds& speeds) {
   if (has_extras || !store_.external.empty()) {
     bonds_.add_to_rows(store_, begin, end);
     const double dt = spring_step(frame_, world_->dt);
@@ -111,10 +113,11 @@ void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extra
               frame_.kick,
               world_->dt,
               {frame_.gravity[0], frame_.gravity[1], frame_.gravity[2]},
-              frame_.local_damping};
+              frame_.local_damping,
+              0.5 * world_->skin / world_->dt};
   const RowKernel advance =
       frame_.local_damping != 0.0 ? world_->kernels.rows_damped : world_->kernels.rows;
-  top_speed = std::max(top_speed, advance(rows));
+  speeds.add(advance(rows));
 }
 
 template <int Dim>
@@ -168,7 +171,7 @@ void Lane<Dim>::finish_band(Side side) {
   (band.across.result.empty() ? world_->kernels.pairs
                               : world_->kernels.pairs_kept)(job(band.across));
   if (band.ghosts_first) replay(band.rows);
-  finish_rows(band.rows.begin, band.rows.end, true, top_speed_[side]);
+  finish_rows(band.rows.begin, band.rows.end, true, speeds_[side]);
 }
 
 template <int Dim>

@@ -14,12 +14,16 @@
 
 namespace barchan {
 
+/// What becomes of a particle that leaves the domain along an axis that does not wrap.
+enum class OutsidePolicy { Error, Delete };
+
 /// Box that bounds the particles; periodic axes wrap.
 struct Domain {
   Vec3 lo = Vec3::Zero();  ///< [m]
   Vec3 hi = Vec3::Zero();  ///< [m]
   std::array<bool, 3> periodic{};
   int strip_axis = 0;  ///< axis along which ranks cut strips
+  OutsidePolicy outside = OutsidePolicy::Error;
 };
 
 /// One dashpot: coefficient = constant + rate·m_eff + critical·sqrt(m_eff).
@@ -115,6 +119,13 @@ struct SearchSpec {
   std::optional<double> skin;  ///< [m]; none = the documented default
 };
 
+/// Where a run is no longer to be trusted. Overlaps as shares of the smaller radius; infinite:
+/// never.
+struct LimitSpec {
+  double overlap_warning = 0.5;
+  double overlap_error = 1.0;
+};
+
 struct OutputSpec {
   std::int64_t series_every = 0;     ///< steps; 0 = a hundredth of the run
   std::int64_t snapshots_every = 0;  ///< steps; 0 = only first and last
@@ -164,6 +175,7 @@ struct Model {
   std::vector<WallSpec> walls;
   std::vector<Stage> stages;  ///< never empty
   SearchSpec search;
+  LimitSpec limits;
   OutputSpec output;
   CheckpointSpec checkpoint;
 };

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <span>
 #include <vector>
 
@@ -39,6 +41,12 @@ struct WallContact {
   std::int32_t wall = 0;
   double spring[Layout<Dim>::kSprings] = {};
 };
+
+template <int Dim>
+[[nodiscard]] bool has_spring(const WallContact<Dim>& contact) {
+  return std::any_of(std::begin(contact.spring), std::end(contact.spring),
+                     [](double s) { return s != 0.0; });
+}
 
 /// A wall is a particle of radius 0 and infinite mass at its point nearest to the particle.
 template <int Dim>

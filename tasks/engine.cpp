@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
+#include <utility>
 
 #include <barchan/comm/clock.hpp>
+#include <barchan/core/error.hpp>
 #include <barchan/tasks/stop_request.hpp>
 
 namespace barchan {
@@ -20,23 +23,40 @@ double now() {
 
 }  // namespace
 
+/// Some exchanges cannot be taken down while a message is on its way.
+template <int Dim>
+Simulation::EngineOf<Dim>::~EngineOf() {
+  if (is_in_step_ || strip_ == nullptr || std::uncaught_exceptions() > 0) return;
+  try {
+    strip_->complete_halo();
+  } catch (const std::exception&) {  // the others are gone
+  }
+}
+
 template <int Dim>
 std::int64_t Simulation::EngineOf<Dim>::run(std::int64_t num_steps) {
   const double begin = now();
   std::int64_t done = 0;
-  for (; done < num_steps && !stopped_; ++done) step();
+  try {
+    for (; done < num_steps && !stopped_; ++done) step();
+  } catch (const AgreedError&) {
+    is_in_step_ = false;  // thrown before the step did anything
+    throw;
+  }
   loop_seconds_ += now() - begin;
   return done;
 }
 
 template <int Dim>
 void Simulation::EngineOf<Dim>::step() {
+  is_in_step_ = true;
   if (trace_) trace_->begin_step(step_);
+  strip_->step = step_;
   if (keeper_) keep_checkpoints();
   update_stage();
   update_lists();
   if (schedule_->is_check_due(step_))
-    schedule_->begin_check(travel(), {stop_is_requested(), wants_checkpoint()});
+    schedule_->begin_check(check_numbers(), {stop_is_requested(), wants_checkpoint()});
   schedule_->poll();
   plates_->drive(world_.walls, step_);
 
@@ -45,10 +65,14 @@ void Simulation::EngineOf<Dim>::step() {
   for (int c = 0; c < 3; ++c) frame.gravity[c] = model_.gravity[c];
   frame.local_damping = model_.stages[static_cast<std::size_t>(stage_)].local_damping;
   graph_->run(frame);
+  for (int l = 0; l < strip_->num_lanes(); ++l) {
+    if (strip_->lane(l).is_fast()) report_fast(l);
+  }
 
   if (plates_->needs_forces(world_.walls)) plates_->collect(wall_sums(), step_);
   plates_->move(world_.walls);
   ++step_;
+  is_in_step_ = false;
 }
 
 /// Chunks of about kChunkSeconds, by what the pairs have cost since the last rebuild. No bit
@@ -74,12 +98,20 @@ void Simulation::EngineOf<Dim>::update_lists() {
     must_save_ = true;
     forget_checkpoint_request();
   }
+  if (const auto answer = schedule_->take_answer()) judge(*answer);
+  if (must_remove_) remove_outside();
   if (!travelled && !must_rebuild_) return;
   size_chunks();
   const double begin = now();
+  const double walls_went = wall_distance2();
+  if (step_ >= options_.loss.step && communicator_.rank() + 1 == communicator_.size())
+    strip_->lane(0).lose(std::exchange(options_.loss.what, Loss::Nothing));
   strip_->rebuild([this](const std::function<void(int)>& body) { graph_->for_each_lane(body); });
+  strip_->lane(0).note_travel(walls_went);
   for (std::size_t w = 0; w < world_.walls.size(); ++w)
     walls_at_rebuild_[w] = world_.walls[w].point;
+  watch_overlap();
+  watch_growth();
   schedule_->rebuilt(step_);
   must_rebuild_ = false;
   rebuild_seconds_ += now() - begin;
@@ -115,24 +147,6 @@ void Simulation::EngineOf<Dim>::enter_stage(int stage) {
     if (active != world_.walls[w].is_active) must_rebuild_ = true;  // walls come into the lists
     world_.walls[w].is_active = active;
   }
-}
-
-template <int Dim>
-Travel Simulation::EngineOf<Dim>::travel() const {
-  Travel most;
-  for (int l = 0; l < strip_->num_lanes(); ++l) {
-    const Travel t = strip_->lane(l).travel();
-    if (!(t.distance2 <= most.distance2)) most.distance2 = t.distance2;
-    if (!(t.speed2 <= most.speed2)) most.speed2 = t.speed2;
-    most.outside = std::max(most.outside, t.outside);
-  }
-  for (std::size_t w = 0; w < world_.walls.size(); ++w) {
-    if (!world_.walls[w].is_active) continue;
-    most.distance2 =
-        std::max(most.distance2, (world_.walls[w].point - walls_at_rebuild_[w]).squaredNorm());
-    most.speed2 = std::max(most.speed2, world_.walls[w].velocity.squaredNorm());
-  }
-  return most;
 }
 
 template <int Dim>

@@ -49,6 +49,9 @@ class Simulation::Engine {
   ExchangeChoice choice_;
   std::unique_ptr<Trace> trace_;  ///< null: none was asked for
   std::unique_ptr<CheckpointKeeper> keeper_;
+  LeftDomain left_;
+  std::function<void(std::span<const Departure>)> tell_departures_;
+  std::vector<Note> notes_;
 };
 
 /// What the particles of the start determine, and all lists with it.
@@ -68,6 +71,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   EngineOf(const Model& model, const std::string& checkpoint, MPI_Comm comm,
            const RunOptions& options);
 
+  ~EngineOf() override;
   std::int64_t run(std::int64_t num_steps) override;
   void for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const override;
   void apply_forces(const std::function<Vec3(const OwnedParticle&)>& force) override;
@@ -100,7 +104,24 @@ class Simulation::EngineOf final : public Simulation::Engine {
   void update_stage();
   void enter_stage(int stage);
   [[nodiscard]] bool stage_is_over();
+  [[nodiscard]] CheckNumbers check_numbers();
+  // engine_watch.cpp
   [[nodiscard]] Travel travel() const;
+  void judge(const CheckNumbers& answer);
+  void judge_balance(const CheckNumbers& answer);
+  void judge_overlap(double share);
+  [[noreturn]] void report_outrun(const CheckNumbers& answer);
+  [[noreturn]] void report_departures(const std::vector<Departure>& departures);
+  [[noreturn]] void report_fast(int lane);
+  [[nodiscard]] std::vector<Departure> departures();
+  void remove_outside();
+  [[nodiscard]] std::string describe(int lane, std::int32_t row);
+  [[nodiscard]] std::string from_rank_with_most(double mine, const std::string& text);
+  [[nodiscard]] std::string describe_fastest();
+  void note(std::string text, bool is_warning = false);
+  void watch_overlap();
+  void watch_growth();
+  [[nodiscard]] double wall_distance2() const;
   [[nodiscard]] std::vector<WallSums> wall_sums() const;
   [[nodiscard]] OwnedParticle particle(const ParticleStore<Dim>& store, std::int32_t i) const;
 
@@ -112,8 +133,14 @@ class Simulation::EngineOf final : public Simulation::Engine {
   std::vector<Vec3> walls_at_rebuild_;
   std::int64_t stage_begin_ = 0;
   bool must_rebuild_ = false;
-  bool must_save_ = false;  ///< all ranks agreed to
+  bool must_save_ = false;               ///< all ranks agreed to
+  bool must_remove_ = false;             ///< particles out of the domain
+  double overlap_ = 0.0;                 ///< largest share seen since the last check
+  bool has_warned_ = false;              ///< of overlap
+  std::vector<std::size_t> sizes_;       ///< of buffers, as last told
+  std::int64_t overlap_watched_at_ = 0;  ///< step
   WorldScale scale_;
+  bool is_in_step_ = false;     ///< or one was not ended
   double chunk_seconds_ = 0.0;  ///< of chunks when they were last sized
   std::int64_t chunks_sized_at_ = 0;
   double loop_seconds_ = 0.0, rebuild_seconds_ = 0.0, checkpoint_seconds_ = 0.0;

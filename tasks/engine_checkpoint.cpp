@@ -81,6 +81,11 @@ CheckpointState Simulation::EngineOf<Dim>::state() {
   s.interval = schedule.interval;
   s.has_check = schedule.has_check;
   s.check = schedule.check;
+  s.check_particles = schedule.num_particles;
+  s.left_particles = left_.particles;
+  s.left_contacts = left_.links.contacts;
+  s.left_wall_contacts = left_.links.wall_contacts;
+  s.left_bonds = left_.links.bonds;
   s.plate_forces = plates_->forces();
   for (std::size_t w = 0; w < world_.walls.size(); ++w)
     s.walls.push_back(saved(world_.walls[w], walls_at_rebuild_[w]));
@@ -162,7 +167,9 @@ void Simulation::EngineOf<Dim>::restore(const OpenCheckpoint& checkpoint) {
     wall.torque = vec(s.walls[w].torque);
     wall.work = s.walls[w].work;
   }
-  schedule_->restore({s.check_step, s.interval, s.has_check, s.check});
+  left_ = {s.left_particles, {s.left_contacts, s.left_wall_contacts, s.left_bonds}};
+  schedule_->restore({s.check_step, s.interval, s.has_check, s.check, s.check_particles},
+                     communicator_.is_root());
   plates_->restore(s.plate_forces, communicator_.is_root());
 }
 

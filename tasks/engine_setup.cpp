@@ -18,6 +18,7 @@ Simulation::EngineOf<Dim>::EngineOf(const Model& model, const ParticleSet& parti
                                     const RunOptions& options)
     : Engine(model, comm, options) {
   check_particles(model_, particles);
+  check_time_step(model_, step_limits(model_, particles));
   num_particles_ = static_cast<std::int64_t>(particles.particles.size());
   const double skin = model_.search.skin.value_or(default_skin(particles));
   make_world({skin, search_reach(particles, skin), num_particles_, !particles.bonds.empty()});
@@ -53,12 +54,12 @@ template <int Dim>
 void Simulation::EngineOf<Dim>::make_loop() {
   choice_ = settle_exchange(*strip_, options_, communicator_);
   strip_->restart_waits();
-  graph_ = std::make_unique<StepGraph<Dim>>(*strip_, options_.threads, options_.schedule,
-                                            options_.max_delay_seconds, options_.delay_seed);
+  graph_ = std::make_unique<StepGraph<Dim>>(*strip_, options_);
   schedule_ = std::make_unique<RebuildSchedule>(communicator_, world_.skin, world_.dt,
                                                 model_.gravity.norm());
   plates_ = std::make_unique<Plates>(communicator_, world_.wall_specs, world_.dt);
   if (options_.trace) make_trace();
+  watch_growth();
 }
 
 template <int Dim>

@@ -27,20 +27,13 @@ ExchangeOptions options_of(const RunOptions& options) {
   ExchangeOptions exchange;
   exchange.max_delay_seconds = options.max_delay_seconds;
   exchange.delay_seed = options.delay_seed;
+  exchange.ranks_per_node = options.ranks_per_node;
   return exchange;
 }
 
 std::unique_ptr<Exchange> recorded(std::unique_ptr<Exchange> exchange, const RunOptions& options) {
   if (!is_recording(options)) return exchange;
   return std::make_unique<RecordingExchange>(std::move(exchange), options.tape);
-}
-
-void check_name(const std::string& name) {
-  const auto names = exchange_choices();
-  if (name == kReplay || std::ranges::find(names, name) != names.end()) return;
-  std::string known;
-  for (const auto& each : names) known += (known.empty() ? "" : ", ") + each;
-  throw InputError("unknown exchange '" + name + "'", "there are: " + known);
 }
 
 template <int Dim>
@@ -58,9 +51,22 @@ WorkPattern work_of(const Strip<Dim>& strip) {
 
 }  // namespace
 
+void check_exchange(const std::string& name, const Communicator& communicator) {
+  const auto names = exchange_choices();
+  if (name == kReplay || std::ranges::find(names, name) != names.end()) return;
+  try {
+    check_exchange_name(name);
+  } catch (const InputError& e) {
+    if (communicator.size() == 1) throw;
+    const auto neighbours = strip_neighbours(communicator.rank(), communicator.size(), false);
+    throw InputError(std::string(e.what()),
+                     "here work: auto, return, " + exchanges_here(communicator, neighbours));
+  }
+}
+
 std::unique_ptr<Exchange> first_exchange(const RunOptions& options,
                                          const Communicator& communicator, Neighbours neighbours) {
-  check_name(options.exchange);
+  check_exchange(options.exchange, communicator);
   const bool has_played_tape = options.tape != nullptr && options.tape->is_playing();
   if (has_played_tape != (options.exchange == kReplay)) {
     throw InputError("exchange 'replay' plays a recorded run, and nothing else does",

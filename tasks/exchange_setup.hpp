@@ -10,6 +10,10 @@
 
 namespace barchan {
 
+/// Collective. Errors, the same on every rank: InputError for an exchange that nobody knows, with
+/// those that work between these ranks and why the others do not.
+void check_exchange(const std::string& name, const Communicator& communicator);
+
 /// The exchange that a run begins with: the one asked for; for `auto` a two-sided one, which works
 /// everywhere, until the sizes of messages are known; for `replay` the tape. Null on one rank.
 /// Collective. Errors, the same on every rank: InputError for an unknown name (with the list), one

@@ -1,18 +1,19 @@
 #include <barchan/tasks/rebuild_schedule.hpp>
 
 #include <algorithm>
-#include <cmath>
-
-#include <fmt/format.h>
 
 #include <barchan/comm/clock.hpp>
-#include <barchan/core/error.hpp>
 
 namespace barchan {
+namespace {
+
+constexpr std::size_t kMaxima = 6, kSums = 4;
+
+}  // namespace
 
 RebuildSchedule::RebuildSchedule(const Communicator& communicator, double skin, double dt,
                                  double gravity)
-    : reduction_(communicator, 5, 0), skin_(skin), dt_(dt), gravity_(gravity) {}
+    : reduction_(communicator, kMaxima, kSums), skin_(skin), dt_(dt), gravity_(gravity) {}
 
 int RebuildSchedule::next_interval(double distance, double speed, double skin, double dt,
                                    double gravity, int last) {
@@ -26,10 +27,16 @@ int RebuildSchedule::next_interval(double distance, double speed, double skin, d
   return n;
 }
 
-void RebuildSchedule::begin_check(const Travel& mine, Wishes wishes) {
-  const double maxima[5] = {mine.distance2, mine.speed2, static_cast<double>(mine.outside),
-                            wishes.stop ? 1.0 : 0.0, wishes.save ? 1.0 : 0.0};
-  reduction_.begin(maxima, {});
+void RebuildSchedule::begin_check(const CheckNumbers& mine, Wishes wishes) {
+  const double maxima[kMaxima] = {mine.distance,
+                                  mine.speed,
+                                  static_cast<double>(mine.outside),
+                                  mine.overlap,
+                                  wishes.stop ? 1.0 : 0.0,
+                                  wishes.save ? 1.0 : 0.0};
+  const std::int64_t sums[kSums] = {mine.particles, mine.imbalance.contacts,
+                                    mine.imbalance.wall_contacts, mine.imbalance.bonds};
+  reduction_.begin(maxima, sums);
 }
 
 void RebuildSchedule::poll() {
@@ -46,32 +53,12 @@ bool RebuildSchedule::must_rebuild(std::int64_t step) {
   if (step != check_step_ + kLag) return false;
   wait();
   const auto maxima = reduction_.maxima();
-  stop_agreed_ = maxima[3] > 0.0;
-  save_agreed_ = maxima[4] > 0.0;
-  const double distance = std::sqrt(maxima[0]), speed = std::sqrt(maxima[1]);
-  if (!std::isfinite(distance) || !std::isfinite(speed)) {
-    throw RunError(
-        fmt::format("at step {} the state is no longer finite: a smaller time.step, more damping "
-                    "or less overlap at the "
-                    "start would help",
-                    step - kLag));
-  }
-  if (maxima[2] > 0.0) {
-    throw RunError(
-        fmt::format("at step {} particle {} has left the domain: enlarge domain.lo and domain.hi, "
-                    "or put a wall there",
-                    step - kLag, static_cast<std::int64_t>(maxima[2])));
-  }
-  if (distance > 0.5 * skin_) {
-    throw RunError(
-        fmt::format("at step {} a particle had moved {:.3g} m since the lists were built, more "
-                    "than half the skin of {:.3g} m "
-                    "(largest speed {:.3g} m/s): contacts may have been missed; give a larger "
-                    "search.skin or a smaller "
-                    "time.step",
-                    step - kLag, distance, skin_, speed));
-  }
-  const int n = next_interval(distance, speed, skin_, dt_, gravity_, interval_);
+  const auto sums = reduction_.sums();
+  stop_agreed_ = maxima[4] > 0.0;
+  save_agreed_ = maxima[5] > 0.0;
+  answer_ = {maxima[0], maxima[1], static_cast<std::int64_t>(maxima[2]),
+             maxima[3], sums[0],   {sums[1], sums[2], sums[3]}};
+  const int n = next_interval(maxima[0], maxima[1], skin_, dt_, gravity_, interval_);
   if (n < 0) return true;
   interval_ = n;
   check_step_ = step + n;
@@ -85,19 +72,25 @@ void RebuildSchedule::rebuilt(std::int64_t step) {
 }
 
 RebuildSchedule::State RebuildSchedule::state(std::int64_t step) {
-  State s{check_step_, interval_, check_step_ < step, {}};
+  State s{check_step_, interval_, check_step_ < step, {}, 0};
   if (!s.has_check) return s;
   reduction_.wait();
   std::copy_n(reduction_.maxima().begin(), s.check.size(), s.check.begin());
+  s.num_particles = reduction_.sums()[0];
   return s;
 }
 
-void RebuildSchedule::restore(const State& state) {
+void RebuildSchedule::restore(const State& state, bool is_root) {
   check_step_ = state.check_step;
   interval_ = state.interval;
   if (!state.has_check) return;
-  const double maxima[5] = {state.check[0], state.check[1], state.check[2], 0.0, 0.0};
-  reduction_.begin(maxima, {});
+  begin_check({state.check[0],
+               state.check[1],
+               static_cast<std::int64_t>(state.check[2]),
+               state.check[3],
+               is_root ? state.num_particles : 0,
+               {}},
+              {});
 }
 
 }  // namespace barchan

@@ -2,12 +2,23 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <utility>
 
 #include <barchan/comm/reduction.hpp>
 #include <barchan/core/lane.hpp>
 
 namespace barchan {
+
+/// What a rank brings to a check, and what all ranks get out of it: largest values, sums.
+struct CheckNumbers {
+  double distance = 0.0;     ///< of a particle since the last rebuild [m]; NaN: a state not finite
+  double speed = 0.0;        ///< [m/s]
+  std::int64_t outside = 0;  ///< id of a particle out of the domain; 0: none
+  double overlap = 0.0;      ///< as a share of the smaller radius, as last looked at
+  std::int64_t particles = 0;  ///< owned
+  LinkCounts imbalance;        ///< of rebuilds
+};
 
 /// Decides when lists are rebuilt, from the state alone and alike on any number of ranks.
 ///
@@ -18,9 +29,9 @@ namespace barchan {
 ///     d + 2·v·t(n) + g·t(n)² <= skin/2   for some n <= 2·(the last n), n <= kLongest:  next check
 ///     n steps later; for no n >= 0: rebuild now.
 ///
-/// t(n) reaches to the answer of the next check, and speeds may double until then. Every check
-/// verifies the bound after the fact: d > skin/2 means that a contact may have been missed, which
-/// is an error, never silence.
+/// t(n) reaches to the answer of the next check, and speeds may double until then. Whoever takes
+/// the answer verifies the bound after the fact: d > skin/2 means that a contact may have been
+/// missed, which is an error, never silence.
 class RebuildSchedule {
  public:
   static constexpr int kLag = 2;
@@ -34,21 +45,23 @@ class RebuildSchedule {
   struct State {
     std::int64_t check_step = 0;
     int interval = 0;
-    bool has_check = false;  ///< begun, not yet answered
-    std::array<double, 3>
-        check{};  ///< its answer: squared distance, squared speed, id of a particle outside
+    bool has_check = false;          ///< begun, not yet answered
+    std::array<double, 4> check{};   ///< its answer: distance, speed, id outside, overlap
+    std::int64_t num_particles = 0;  ///< its answer, too
   };
 
   RebuildSchedule(const Communicator& communicator, double skin, double dt, double gravity);
 
   /// Whether the check of step `step` is due, so that travel() must be called. Before the step.
   [[nodiscard]] bool is_check_due(std::int64_t step) const { return step == check_step_; }
-  void begin_check(const Travel& mine, Wishes wishes);
+  void begin_check(const CheckNumbers& mine, Wishes wishes);
 
   /// The decision for `step`, before it; waits for the reduction when its time has come.
-  /// Errors, the same on every rank: RunError when a particle outran the skin, left the domain or
-  /// is not finite.
   [[nodiscard]] bool must_rebuild(std::int64_t step);
+  /// What the check found that the last must_rebuild() had the answer of; once.
+  [[nodiscard]] std::optional<CheckNumbers> take_answer() {
+    return std::exchange(answer_, std::nullopt);
+  }
   [[nodiscard]] bool stop_agreed() const { return stop_agreed_; }
   /// Whether some rank wished to save; true once.
   [[nodiscard]] bool take_save_agreed() { return std::exchange(save_agreed_, false); }
@@ -59,7 +72,7 @@ class RebuildSchedule {
   /// For checkpoints, before `step`. Waits for a check's answer.
   [[nodiscard]] State state(std::int64_t step);
   /// As if the checks since the start had been made. Collective; @pre nothing is in flight
-  void restore(const State& state);
+  void restore(const State& state, bool is_root);
 
   /// The rule above. @return steps to the next check, or -1: rebuild
   static int next_interval(double distance, double speed, double skin, double dt, double gravity,
@@ -67,6 +80,7 @@ class RebuildSchedule {
 
  private:
   Reduction reduction_;
+  std::optional<CheckNumbers> answer_;
   double skin_, dt_, gravity_;
   std::int64_t check_step_ = 0;
   int interval_ = 0;

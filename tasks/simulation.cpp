@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <stdexcept>
+#include <utility>
 
 #include <barchan/core/error.hpp>
 #include <barchan/tasks/engine.hpp>
@@ -101,6 +102,15 @@ std::int64_t Simulation::num_owned() const {
 }
 std::int64_t Simulation::num_particles() const {
   return engine_->num_particles_;
+}
+const LeftDomain& Simulation::left_domain() const {
+  return engine_->left_;
+}
+void Simulation::on_departure(std::function<void(std::span<const Departure>)> tell) {
+  engine_->tell_departures_ = std::move(tell);
+}
+std::vector<Note> Simulation::take_notes() {
+  return std::exchange(engine_->notes_, {});
 }
 void Simulation::apply_forces(const std::function<Vec3(const OwnedParticle&)>& force) {
   engine_->apply_forces(force);

@@ -44,6 +44,18 @@ struct Timings {
   ExchangeStats exchange;  ///< zero on one rank
 };
 
+/// Something that happened in a run and that its log should say.
+struct Note {
+  std::string text;  ///< a line
+  bool is_warning = false;
+};
+
+/// What left the domain since the start, and the links that went with it.
+struct LeftDomain {
+  std::int64_t particles = 0;
+  LinkCounts links;
+};
+
 /// A DEM simulation on all ranks of a communicator.
 ///
 ///     Simulation sim(model, particles, MPI_COMM_WORLD, options);
@@ -75,9 +87,10 @@ class Simulation {
   Simulation& operator=(Simulation&&) noexcept;
 
   /// Advances by at most `num_steps`; fewer when a stop was requested. @return steps done
-  /// Errors: RunError, the same on every rank where all ranks can know it: a particle left the
-  /// domain, the state is not finite, a particle outran the skin; on one rank only: a wait without
-  /// end.
+  /// Errors: AgreedError, the same on every rank and between two steps: a particle left the domain
+  /// and must not, overlaps beyond the limit, a particle or wall outran the skin, particles,
+  /// contacts or bonds got lost. RunError on one rank only: a particle that in one step moves
+  /// farther than half the skin or is no longer finite, a wait without end.
   std::int64_t run(std::int64_t num_steps);
   /// Ends run() on all ranks within a few steps. Callable from a signal handler.
   static void request_stop() noexcept;
@@ -94,7 +107,13 @@ class Simulation {
   /// Calls `visit` for every particle that this rank owns, in canonical order.
   void for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const;
   [[nodiscard]] std::int64_t num_owned() const;
-  [[nodiscard]] std::int64_t num_particles() const;  ///< on all ranks
+  [[nodiscard]] std::int64_t num_particles() const;     ///< on all ranks, now
+  [[nodiscard]] const LeftDomain& left_domain() const;  ///< on all ranks; local
+  /// Calls `tell` on rank 0, within run(), with particles that left the domain, in order of their
+  /// ids: before they are removed, or before run() throws. What it throws every rank throws.
+  void on_departure(std::function<void(std::span<const Departure>)> tell);
+  /// What happened on this rank since the last call; what all ranks know is told by rank 0. Local.
+  [[nodiscard]] std::vector<Note> take_notes();
   /// Sets a force [N] on every owned particle, added in every step until it is set again or
   /// cleared.
   void apply_forces(const std::function<Vec3(const OwnedParticle&)>& force);

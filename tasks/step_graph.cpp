@@ -4,7 +4,6 @@
 #include <chrono>
 #include <thread>
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <barchan/comm/clock.hpp>
@@ -23,15 +22,17 @@ constexpr double kSecond = 1e-9;  // in nanoseconds
 }  // namespace
 
 template <int Dim>
-StepGraph<Dim>::StepGraph(Strip<Dim>& strip, int threads, Schedule schedule, double max_task_delay,
-                          std::uint64_t delay_seed)
+StepGraph<Dim>::StepGraph(Strip<Dim>& strip, const RunOptions& options)
     : strip_(strip),
-      schedule_(schedule),
-      workers_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)),
-      arena_(threads),
-      max_task_delay_(max_task_delay),
-      delay_state_(delay_seed * 2 + 1) {
+      schedule_(options.schedule),
+      workers_(tbb::global_control::max_allowed_parallelism,
+               static_cast<std::size_t>(options.threads)),
+      arena_(options.threads),
+      max_task_delay_(options.max_delay_seconds),
+      delay_state_(options.delay_seed * 2 + 1) {
   arena_.execute([this] { build(); });
+  if (options.progress == Progress::Thread && strip_.exchange() != nullptr)
+    driver_ = std::make_unique<ProgressThread>([this] { drive(); }, comm_mutex_);
 }
 
 template <int Dim>
@@ -65,6 +66,7 @@ void StepGraph<Dim>::run(const StepFrame& frame) {
     for (LaneNodes& n : nodes_) n.idle_since = 0;
     left_is_done_ = false;
     for (const Side side : kSides) arrived_[at(side)] = !strip_.awaits(side);
+    const ProgressThread::Shift shift(driver_.get());
     if (schedule_ == Schedule::Sequential) await_all();
     for (int l = 0; l < strip_.num_lanes(); ++l) {
       for (const Side side : kSides) {
@@ -233,14 +235,30 @@ void StepGraph<Dim>::notice(Side side) {
   if (lanes_left_ >= 0) signal(lane, side);
 }
 
+/// On the progress thread. What it finds stays found until a worker looks.
+/// @pre comm_mutex_ is held
+template <int Dim>
+void StepGraph<Dim>::drive() {
+  Exchange& exchange = *strip_.exchange();
+  if (exchange.is_blocking()) return;
+  exchange.progress();
+  for (const Side side : kSides) {
+    if (!arrived_[at(side)] && may_poll(side)) (void)exchange.poll(side);
+  }
+}
+
 template <int Dim>
 void StepGraph<Dim>::try_poll() {
-  if (arrived_[0] && arrived_[1]) return;
+  const bool all_is_in = arrived_[0] && arrived_[1];
+  if (all_is_in && (strip_.exchange() == nullptr || driver_)) return;
   const std::unique_lock<std::mutex> lock(comm_mutex_, std::try_to_lock);
   if (!lock.owns_lock()) return;
   const std::array<bool, 2> before{arrived_[0], arrived_[1]};
   const std::int64_t begin = now_ns();
-  (void)poll_sides();
+  if (all_is_in)
+    strip_.exchange()->progress();
+  else
+    (void)poll_sides();
   const std::int64_t end = now_ns();
   poll_ns_ += end - begin;
   if (trace_ == nullptr) return;
@@ -274,9 +292,9 @@ void StepGraph<Dim>::poll_until_in(bool may_leave) {
         return lock.owns_lock() && (poll_sides() || (may_leave && arrived_[0]));
       },
       [this] {
-        return fmt::format("halo of this step, from the {}{}{}", arrived_[0] ? "" : "left",
-                           arrived_[0] || arrived_[1] ? "" : " and the ",
-                           arrived_[1] ? "" : "right");
+        if (arrived_[0] || arrived_[1])
+          return strip_.name_of_halo(arrived_[0] ? Side::Right : Side::Left);
+        return strip_.name_of_halo(Side::Left) + ", and " + strip_.name_of_halo(Side::Right);
       });
 }
 

@@ -15,6 +15,7 @@
 
 #include <barchan/core/lane.hpp>
 #include <barchan/tasks/graph_dot.hpp>
+#include <barchan/tasks/progress_thread.hpp>
 #include <barchan/tasks/run_options.hpp>
 #include <barchan/tasks/strip.hpp>
 #include <barchan/tasks/trace.hpp>
@@ -48,14 +49,16 @@ struct StepTimes {
 ///   in memory left/right(l)    of step k precede the sends of step k+1's halo, which fly behind
 ///   the chunks of step k+1
 ///
-/// A chunk that ends polls the exchange under a try-lock. When no chunk is left, one drain node
-/// polls until all is in; a lone worker leaves it for the left band once that can be done. With
-/// Schedule::Sequential the halo is waited for before the first chunk: nothing is hidden.
+/// A chunk that ends polls the exchange under a try-lock; when all is in, it still lets the
+/// exchange advance, for neighbours who wait for the rest of what this rank sent. When no chunk is
+/// left, one drain node polls until all is in; a lone worker leaves it for the left band once that
+/// can be done. With Progress::Thread a thread polls all the time, and chunks only look at what it
+/// found. With Schedule::Sequential the halo is waited for before the first chunk: nothing is
+/// hidden.
 template <int Dim>
 class StepGraph {
  public:
-  StepGraph(Strip<Dim>& strip, int threads, Schedule schedule, double max_task_delay,
-            std::uint64_t delay_seed);
+  StepGraph(Strip<Dim>& strip, const RunOptions& options);
 
   /// One step on all lanes. @return when all lanes are done and the next halo is on its way
   void run(const StepFrame& frame);
@@ -82,6 +85,7 @@ class StepGraph {
   void run_band(int lane, Side side);
   void try_poll();
   bool poll_sides();
+  void drive();
   [[nodiscard]] bool may_poll(Side side) const;
   void signal(int lane, Side side);
   void send(int lane, Side side);
@@ -116,6 +120,7 @@ class StepGraph {
   Trace* trace_ = nullptr;
   double max_task_delay_;
   std::atomic<std::uint64_t> delay_state_;
+  std::unique_ptr<ProgressThread> driver_;  ///< last: it ends first; null: workers poll
 };
 
 extern template class StepGraph<2>;

@@ -77,10 +77,10 @@ void Strip<Dim>::finish_band(int l, Side side) {
   }
   if (band.returns && side == Side::Right) {
     const auto message = exchange_->received(side);
-    std::vector<double> results(message.size() / sizeof(double));
-    std::memcpy(results.data(), message.data(), results.size() * sizeof(double));
+    results_.resize(message.size() / sizeof(double));
+    std::memcpy(results_.data(), message.data(), results_.size() * sizeof(double));
     exchange_->release(side);
-    return mine.finish_right_band(results);
+    return mine.finish_right_band(results_);
   }
   if (awaits(side)) {
     mine.unpack_halo(core_side, exchange_->received(side));
@@ -88,9 +88,9 @@ void Strip<Dim>::finish_band(int l, Side side) {
   }
   mine.finish_band(core_side);
   if (!band.returns) return;
-  const std::vector<double> results = mine.results();
-  send_halo(side, results.size() * sizeof(double), [&](std::span<std::byte> message) {
-    std::memcpy(message.data(), results.data(), message.size());
+  mine.results(results_);
+  send_halo(side, results_.size() * sizeof(double), [&](std::span<std::byte> message) {
+    std::memcpy(message.data(), results_.data(), message.size());
   });
 }
 
@@ -139,11 +139,13 @@ void Strip<Dim>::end_step(bool sends) {
 
 template <int Dim>
 void Strip<Dim>::wait_halo(Side side) {
-  wait_until([&] { return exchange_->poll(side); },
-             [&] {
-               return fmt::format("rank {}: halo message from rank {} ({})", communicator_.rank(),
-                                  neighbours_.rank(side), name_of(side));
-             });
+  wait_until([&] { return exchange_->poll(side); }, [&] { return name_of_halo(side); });
+}
+
+template <int Dim>
+std::string Strip<Dim>::name_of_halo(Side side) const {
+  return fmt::format("rank {}: halo of step {} from rank {} ({})", communicator_.rank(), step,
+                     neighbours_.rank(side), name_of(side));
 }
 
 template <int Dim>

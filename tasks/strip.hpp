@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <barchan/comm/communicator.hpp>
@@ -95,6 +96,9 @@ class Strip {
     return num_migrations_;
   }  ///< particles that left this rank
   [[nodiscard]] std::size_t bytes() const;
+  /// What this rank waits for, as messages say it: "rank 0: halo of step 17 from rank 1 (right)".
+  [[nodiscard]] std::string name_of_halo(Side side) const;
+  std::int64_t step = 0;               ///< for messages
   std::int64_t chunk_pairs = 1 << 14;  ///< pairs per chunk from the next rebuild on
 
  private:
@@ -119,6 +123,7 @@ class Strip {
   void send_halo(Side side, std::size_t bytes, Pack&& pack);
   void count_wait(double& seconds, Trace::Slice name, std::int64_t begin);
   void begin_sizes();
+  void reserve_posts();
 
   World<Dim>& world_;
   const Communicator& communicator_;
@@ -128,6 +133,7 @@ class Strip {
   bool returns_;
   std::vector<std::unique_ptr<Lane<Dim>>> lanes_;
   std::vector<Post> posts_;
+  std::vector<double> results_;  ///< of the published scheme, going or come
   std::vector<int> cuts_;
   std::array<bool, 2> awaited_{};  ///< a message of another rank is due in this step
   bool fresh_ = true;              ///< ghosts are up to date: nothing to unpack in this step

@@ -78,8 +78,10 @@ void Strip<Dim>::seed(const ParticleSet& set) {
     for (int l = 0; l < num_lanes(); ++l) body(l);
   };
   exchange_ghosts(one_by_one);
-  for (const auto& lane : lanes_)
+  for (const auto& lane : lanes_) {
     lane->restart_search_seconds();  // setting up is not part of the loop
+    lane->forget_imbalance();
+  }
 }
 
 template <int Dim>
@@ -197,6 +199,7 @@ void Strip<Dim>::exchange_ghosts(const ForEachLane& parallel) {
     lane(l).restore_history();
     lane(l).cut_chunks(chunk_pairs);
   });
+  reserve_posts();
   fresh_ = true;
   awaited_ = {};
   // In the published scheme results come back even where ghosts are fresh.
@@ -207,6 +210,22 @@ void Strip<Dim>::exchange_ghosts(const ForEachLane& parallel) {
   sizes_.wait();
   count_wait(waits_.ghosts, Trace::Slice::Reduction, begin);
   exchange_->reserve(static_cast<std::size_t>(sizes_.maxima()[0]));
+}
+
+/// Steps must not allocate.
+template <int Dim>
+void Strip<Dim>::reserve_posts() {
+  for (int l = 0; l < num_lanes(); ++l) {
+    for (const Side side : kSides) {
+      const std::size_t bytes =
+          lane(l).halo_bytes(side == Side::Left ? Lane<Dim>::Left : Lane<Dim>::Right);
+      for (auto& boxes : posts_[static_cast<std::size_t>(l)].halo) boxes[at(side)].reserve(bytes);
+    }
+  }
+  if (!returns_) return;
+  results_.reserve(std::max(lane(0).max_results_bytes(Lane<Dim>::Left),
+                            lane(num_lanes() - 1).max_results_bytes(Lane<Dim>::Right)) /
+                   sizeof(double));
 }
 
 template <int Dim>
@@ -223,8 +242,13 @@ void Strip<Dim>::wait_bulk(const char* what) {
         return exchange_->poll_bulk();
       },
       [this, what] {
-        return fmt::format("rank {}: {} of rebuild {} from ranks {} and {}", communicator_.rank(),
-                           what, num_rebuilds_, neighbours_.left, neighbours_.right);
+        std::string from;
+        for (const Side side : kSides) {
+          if (!neighbours_.has(side)) continue;
+          from += fmt::format("{} rank {} ({})", from.empty() ? "from" : " or",
+                              neighbours_.rank(side), name_of(side));
+        }
+        return fmt::format("rank {}: {} of step {} {}", communicator_.rank(), what, step, from);
       });
   waits_.in_flight += 1e-9 * static_cast<double>(now_ns() - bulk_begin_);
 }

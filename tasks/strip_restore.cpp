@@ -29,7 +29,10 @@ void Strip<Dim>::restore(std::vector<int> cuts, std::span<const CheckpointShare>
   exchange_ghosts([this](const std::function<void(int)>& body) {
     for (int l = 0; l < num_lanes(); ++l) body(l);
   });
-  for (int l = 0; l < num_lanes(); ++l) lane(l).put_back(shares[static_cast<std::size_t>(l)]);
+  for (int l = 0; l < num_lanes(); ++l) {
+    lane(l).put_back(shares[static_cast<std::size_t>(l)]);
+    lane(l).forget_imbalance();
+  }
   refresh_ghosts();
 }
 

@@ -54,7 +54,8 @@ class Barchan:
     def run(self, start, case, steps):
         out = os.path.join(case.folder, "barchan.out")
         command = [*start, self.path, "run", cases.deck(case.case), "--out", out, "--force", "--quiet", "--threads", "1",
-                   "--steps", str(steps), "--exchange", self.name, "--schedule", self.schedule]
+                   "--steps", str(steps), "--exchange", self.name]
+        command += ["--progress", "thread"] if self.schedule == "thread" else ["--schedule", self.schedule]
         for key, value in cases.settings(case.case, case.inputs).items():
             command += ["--set", f"{key}={value}"]
         run(command)

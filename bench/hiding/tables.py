@@ -49,7 +49,7 @@ def chosen(by_delay):
 
 def markdown(found):
     groups = group(found)
-    delays = list(dict.fromkeys(m["delay_us"] for m in found))
+    delays = sorted(dict.fromkeys(m["delay_us"] for m in found), key=lambda d: d or 0)
     heads = ["here" if d is None else f"{d:,} µs" for d in delays]
     text = ""
     for size in dict.fromkeys(m["size"] for m in found):

@@ -1,198 +1,41 @@
 // The forwarder of the network lab: reads packets from one TUN device per emulated host, holds each
-// until its time by the model in wire.hpp, and writes it to the device of the receiver. Run by
-// `netlab`; says "ready" on standard output once the devices netlab1 ... netlabN exist in its
-// network namespace; ends on SIGTERM.
-#include "tun.hpp"
-#include "wire.hpp"
-
-#include <poll.h>
+// until its time by the model in wire.hpp, and writes it to the device of the receiver; a thread
+// per host (port.hpp). Run by `netlab`; says "ready" on standard output once the devices netlab1
+// ... netlabN exist in its network namespace; ends on SIGTERM.
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 
-#include <array>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <exception>
-#include <queue>
 #include <string_view>
+#include <thread>
+
+#include "port.hpp"
 
 namespace netlab {
 namespace {
 
-volatile std::sig_atomic_t stop_asked = 0;
-
 struct Options {
   int hosts = 2;
   WireOptions wire;
-  Nanoseconds spin = 0;  ///< polls so long before a release, rather than to be late
   bool offload = true;
-  std::string stats;  ///< file for the figures of the run; empty: none
+  std::vector<std::string> cpus;  ///< of each host, such as "0,2"; empty: any
+  std::string stats;              ///< file for the figures of the run; empty: none
 };
 
-struct Packet {
-  Nanoseconds due = 0;
-  std::uint64_t order = 0;  ///< ties leave in the order in which they came
-  int to = 0;
-  bool past_port = false;  ///< Wire::arrive() is behind it
-  double wire_bytes = 0;
-  std::vector<char> frame;
-};
-
-struct Later {
-  bool operator()(const Packet& a, const Packet& b) const {
-    return a.due != b.due ? a.due > b.due : a.order > b.order;
+std::vector<std::string> split(const std::string& text, char separator) {
+  std::vector<std::string> parts(1);
+  for (const char c : text) {
+    if (c == separator)
+      parts.emplace_back();
+    else
+      parts.back() += c;
   }
-};
-
-struct Stats {
-  std::uint64_t packets = 0, bytes = 0, dropped = 0, foreign = 0, sleeps = 0;
-  std::array<std::uint64_t, 2001>
-      late_us{};  ///< how far behind its time a packet left; the last bin: or more
-  Nanoseconds late_max = 0;
-  Nanoseconds timer_lag = 0;  ///< mean, as learnt
-
-  int late_quantile(double share) const {
-    std::uint64_t below = 0;
-    for (std::size_t bin = 0; bin < late_us.size(); ++bin) {
-      below += late_us[bin];
-      if (double(below) >= share * double(packets)) return int(bin);
-    }
-    return int(late_us.size());
-  }
-};
-
-Nanoseconds now_ns() {
-  timespec t{};
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return Nanoseconds{t.tv_sec} * 1'000'000'000 + t.tv_nsec;
+  return parts;
 }
-
-class Forwarder {
- public:
-  explicit Forwarder(const Options& options)
-      : x_options(options), x_wire(options.hosts, options.wire), x_scratch(1 << 17) {
-    sigprocmask(SIG_SETMASK, nullptr, &x_open_signals);
-    sigdelset(&x_open_signals, SIGTERM);
-    const double per_byte = options.wire.ns_per_byte;
-    for (int host = 0; host < options.hosts; ++host) {
-      const std::string device = "netlab" + std::to_string(host + 1);
-      x_polls.push_back({open_tun(device, options.offload), POLLIN, 0});
-      announce_speed(device, per_byte > 0 ? 8e9 / per_byte : 1e11);
-    }
-  }
-
-  void run() {
-    while (!stop_asked) {
-      release_due();
-      if (!wait()) continue;
-      for (int host = 0; host < x_options.hosts; ++host)
-        if (x_polls[host].revents & POLLIN) take_from(host);
-    }
-  }
-
-  const Stats& stats() const { return x_stats; }
-
- private:
-  /// Sleeps until a packet comes or the next release is near. True when there is something to read.
-  /// Timers are late by a time that depends on the machine: the sleep is shortened by the mean of
-  /// it.
-  bool wait() {
-    if (x_line.empty()) {
-      ++x_stats.sleeps;
-      return ppoll(x_polls.data(), x_polls.size(), nullptr, &x_open_signals) > 0;
-    }
-    const Nanoseconds start = now_ns();
-    const Nanoseconds left = x_line.top().due - start - x_options.spin - x_stats.timer_lag;
-    const Nanoseconds sleep = std::max<Nanoseconds>(left, 0);
-    const timespec timeout{sleep / 1'000'000'000, sleep % 1'000'000'000};
-    const bool has_input = ppoll(x_polls.data(), x_polls.size(), &timeout, &x_open_signals) > 0;
-    if (sleep > 0) {
-      ++x_stats.sleeps;
-      constexpr Nanoseconds largest = 50'000;  // a stall of the machine is no lag of timers
-      if (!has_input)
-        x_stats.timer_lag += (std::min(now_ns() - start - sleep, largest) - x_stats.timer_lag) / 16;
-    }
-    return has_input;
-  }
-
-  void take_from(int host) {
-    constexpr int batch = 64;  // then the other hosts get their turn
-    for (int n = 0; n < batch; ++n) {
-      const ssize_t size = read(x_polls[host].fd, x_scratch.data(), x_scratch.size());
-      if (size <= 0) return;
-      hold(host, Frame(x_scratch.data(), static_cast<std::size_t>(size)),
-           static_cast<std::size_t>(size));
-      release_due();
-    }
-  }
-
-  void hold(int from, const Frame& frame, std::size_t size) {
-    Packet packet;
-    packet.to = frame.receiver(x_options.hosts);
-    if (packet.to < 0) {
-      ++x_stats.foreign;
-      return;
-    }
-    packet.wire_bytes = frame.wire_bytes();
-    const auto due = x_wire.leave(from, packet.to, frame.flow(), packet.wire_bytes, now_ns());
-    if (!due) {
-      ++x_stats.dropped;
-      return;
-    }
-    packet.due = *due;
-    packet.order = x_order++;
-    packet.frame.assign(x_scratch.data(), x_scratch.data() + size);
-    x_line.push(std::move(packet));
-  }
-
-  void release_due() {
-    while (!x_line.empty()) {
-      const Nanoseconds now = now_ns();
-      if (x_line.top().due > now) return;
-      Packet packet =
-          std::move(const_cast<Packet&>(x_line.top()));  // the keys stay as they are until the pop
-      x_line.pop();
-      if (!packet.past_port && !pass_port(packet)) continue;
-      if (packet.due > now)
-        x_line.push(std::move(packet));
-      else
-        deliver(packet, now);
-    }
-  }
-
-  bool pass_port(Packet& packet) {
-    const auto due = x_wire.arrive(packet.to, packet.wire_bytes, packet.due);
-    x_stats.dropped += !due;
-    packet.due = due.value_or(packet.due);
-    packet.past_port = true;
-    return due.has_value();
-  }
-
-  void deliver(const Packet& packet, Nanoseconds now) {
-    if (write(x_polls[packet.to].fd, packet.frame.data(), packet.frame.size()) < 0) {
-      ++x_stats.dropped;
-      return;
-    }
-    const Nanoseconds late = now - packet.due;
-    x_stats.late_max = std::max(x_stats.late_max, late);
-    ++x_stats.late_us[std::min<std::size_t>(std::size_t(late / 1000), x_stats.late_us.size() - 1)];
-    ++x_stats.packets;
-    x_stats.bytes += packet.frame.size() - Frame::header_size;
-  }
-
-  Options x_options;
-  Wire x_wire;
-  Stats x_stats;
-  sigset_t x_open_signals{};
-  std::vector<pollfd> x_polls;
-  std::priority_queue<Packet, std::vector<Packet>, Later> x_line;
-  std::vector<char> x_scratch;
-  std::uint64_t x_order = 0;
-};
 
 Options parse(int argc, char** argv) {
   Options options;
@@ -217,10 +60,10 @@ Options parse(int argc, char** argv) {
       options.wire.keep_order = std::atoi(value) != 0;
     else if (key == "--seed")
       options.wire.seed = std::strtoull(value, nullptr, 10);
-    else if (key == "--spin-ns")
-      options.spin = std::atoll(value);
     else if (key == "--offload")
       options.offload = std::atoi(value) != 0;
+    else if (key == "--cpus")
+      options.cpus = split(value, ':');
     else if (key == "--stats")
       options.stats = value;
     else
@@ -236,7 +79,50 @@ void become_urgent() {
   param.sched_priority = 10;
   if (sched_setscheduler(0, SCHED_FIFO, &param) != 0) setpriority(PRIO_PROCESS, 0, -20);
   prctl(PR_SET_TIMERSLACK, 1UL);
-  mlockall(MCL_CURRENT | MCL_FUTURE);
+}
+
+void stay_on(const std::string& cpus) {
+  cpu_set_t set;
+  CPU_ZERO(&set);
+  for (const std::string& cpu : split(cpus, ',')) CPU_SET(std::atoi(cpu.c_str()), &set);
+  sched_setaffinity(0, sizeof set, &set);
+}
+
+void make_devices(const Options& options, Network& network) {
+  const double per_byte = options.wire.ns_per_byte;
+  for (int host = 0; host < options.hosts; ++host) {
+    const std::string device = "netlab" + std::to_string(host + 1);
+    network.devices.push_back(open_tun(device, options.offload));
+    announce_speed(device, per_byte > 0 ? 8e9 / per_byte : 1e11);
+  }
+}
+
+/// Forwards until SIGTERM. @return the figures of all ports. @pre SIGTERM is blocked
+Stats forward(const Options& options, Network& network) {
+  std::vector<Port> ports;
+  for (int host = 0; host < options.hosts; ++host) ports.emplace_back(network, host);
+  std::vector<std::thread> threads;
+  for (int host = 0; host < options.hosts; ++host) {
+    threads.emplace_back([&, host] {
+      become_urgent();
+      if (!options.cpus.empty()) stay_on(options.cpus[host]);
+      ports[host].run();
+    });
+  }
+  std::puts("ready");
+  std::fflush(stdout);
+  sigset_t ends;
+  sigemptyset(&ends);
+  sigaddset(&ends, SIGTERM);
+  sigwaitinfo(&ends, nullptr);
+  network.stop = true;
+  for (std::thread& thread : threads) pthread_kill(thread.native_handle(), SIGTERM);
+  Stats sum;
+  for (int host = 0; host < options.hosts; ++host) {
+    threads[host].join();
+    sum.add(ports[host].stats());
+  }
+  return sum;
 }
 
 void write_stats(const std::string& path, const Stats& stats, double seconds) {
@@ -268,15 +154,16 @@ int main(int argc, char** argv) try {
   sigaddset(&mask, SIGTERM);
   sigaddset(&mask, SIGINT);  // a Ctrl-C in the terminal is for the program; the lab ends after it
   sigprocmask(SIG_BLOCK, &mask, nullptr);
-  std::signal(SIGTERM, [](int) { stop_asked = 1; });
+  std::signal(SIGTERM, [](int) {});
   const Options options = parse(argc, argv);
-  Forwarder forwarder(options);
-  become_urgent();
-  std::puts("ready");
-  std::fflush(stdout);
+  Network network(options.hosts, options.wire);
+  sigprocmask(SIG_SETMASK, nullptr, &network.open_signals);
+  sigdelset(&network.open_signals, SIGTERM);
+  make_devices(options, network);
+  mlockall(MCL_CURRENT | MCL_FUTURE);
   const Nanoseconds start = now_ns();
-  forwarder.run();
-  write_stats(options.stats, forwarder.stats(), 1e-9 * double(now_ns() - start));
+  const Stats stats = forward(options, network);
+  write_stats(options.stats, stats, 1e-9 * double(now_ns() - start));
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());
   return 1;

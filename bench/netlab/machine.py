@@ -49,7 +49,7 @@ def find_forwarder(here):
             raise Lacking(f"the forwarder NETLAB_FORWARDER={given}",
                           "build the target netlab_forwarder, or unset it")
         return given
-    sources = [os.path.join(here, name) for name in ("forwarder.cpp", "tun.hpp", "wire.hpp")]
+    sources = [os.path.join(here, name) for name in ("forwarder.cpp", "port.hpp", "tun.hpp", "wire.hpp")]
     digest = hashlib.sha256(b"".join(read_bytes(name) for name in sources)).hexdigest()[:16]
     base = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")
     cache = os.path.join(base, "barchan-netlab")
@@ -61,7 +61,7 @@ def find_forwarder(here):
             raise Lacking("a C++20 compiler",
                           "install the package g++, or set NETLAB_FORWARDER to a built forwarder")
         fresh = f"{path}.{os.getpid()}"
-        built = subprocess.run([compiler, "-std=c++20", "-O2", "-o", fresh, sources[0]])
+        built = subprocess.run([compiler, "-std=c++20", "-O2", "-pthread", "-o", fresh, sources[0]])
         if built.returncode != 0:
             raise Lacking("its forwarder", f"{compiler} does not compile {sources[0]}")
         os.rename(fresh, path)

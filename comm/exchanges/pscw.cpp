@@ -45,6 +45,7 @@ class Pscw final : public SlotExchange {
 
   // An exposure ends only by an access, so each window sees one more, empty, in each direction.
   void retire() override {
+    take_in_the_last();
     for_slots([&](const MessageKey& key) {
       Window& slot = window(key);
       if (slot.handle() == MPI_WIN_NULL) return;
@@ -56,6 +57,7 @@ class Pscw final : public SlotExchange {
       if (neighbours().has(key.side)) check(MPI_Win_wait(slot.handle()), "MPI_Win_wait");
       slot.free();
     });
+    num_posted_ = num_recycled_ = {};
   }
 
   std::byte* outbox(const MessageKey& key) override { return outboxes_[index(key)].data(); }
@@ -66,15 +68,21 @@ class Pscw final : public SlotExchange {
     check(MPI_Win_start(groups_[index(key.side)], 0, slot.handle()), "MPI_Win_start");
     slot.put({outbox(key), header_bytes + header.bytes}, neighbours().rank(key.side), 0);
     check(MPI_Win_complete(slot.handle()), "MPI_Win_complete");
+    ++num_posted_[index(key)];
   }
 
   const std::byte* arrived(const MessageKey& key) override {
     int is_there = 0;
     check(MPI_Win_test(window(key).handle(), &is_there), "MPI_Win_test");
+    is_tested_[index(key)] = is_there != 0;
     return is_there != 0 ? window(key).base() : nullptr;
   }
 
-  void recycle(const MessageKey& key) override { expose(key); }
+  void recycle(const MessageKey& key) override {
+    expose(key);
+    ++num_recycled_[index(key)];
+    is_tested_[index(key)] = false;
+  }
 
   std::string transport() const override { return "one-sided " + windows_[0][0].component(); }
 
@@ -84,6 +92,19 @@ class Pscw final : public SlotExchange {
     for (const Lane lane : {Lane::Halo, Lane::Bulk}) {
       for (const Side side : {Side::Left, Side::Right}) {
         for (const std::uint64_t number : {1U, 2U}) act(MessageKey{lane, side, number});
+      }
+    }
+  }
+
+  /// A run may end with a message on its way from either side, whose access is then not yet over.
+  void take_in_the_last() {
+    for (const Lane lane : {Lane::Halo, Lane::Bulk}) {
+      for (const Side side : {Side::Left, Side::Right}) {
+        const auto at = index({lane, side, 0});
+        if (num_posted_[at] == num_recycled_[at]) continue;
+        const MessageKey key{lane, side, num_recycled_[at] + 1};
+        if (!is_tested_[at]) check(MPI_Win_wait(window(key).handle()), "MPI_Win_wait");
+        recycle(key);
       }
     }
   }
@@ -109,6 +130,8 @@ class Pscw final : public SlotExchange {
   std::array<std::array<Window, 2>, num_lane_sides> windows_;
   std::array<std::vector<std::byte>, num_lane_sides> outboxes_;
   std::array<MPI_Group, 2> groups_{MPI_GROUP_NULL, MPI_GROUP_NULL};
+  std::array<std::uint64_t, num_lane_sides> num_posted_{}, num_recycled_{};
+  std::array<bool, num_lane_sides> is_tested_{};  ///< in, not yet recycled
   int num_exceptions_;
 };
 

@@ -15,6 +15,7 @@ class SharedMemory final : public SlotExchange {
  public:
   using SlotExchange::SlotExchange;
   std::string_view name() const override { return "shared"; }
+  void progress() override {}  // nothing is ever under way
 
  protected:
   void allocate(SlotCapacity capacity) override {

@@ -34,7 +34,11 @@ CheckpointState take_state(ByteReader& in) {
   s.check_step = in.take<std::int64_t>();
   s.interval = in.take<std::int32_t>();
   s.has_check = in.take<std::uint8_t>() != 0;
-  s.check = in.take<std::array<double, 3>>();
+  s.check = in.take<std::array<double, 4>>();
+  s.check_particles = in.take<std::int64_t>();
+  for (std::int64_t* count :
+       {&s.left_particles, &s.left_contacts, &s.left_wall_contacts, &s.left_bonds})
+    *count = in.take<std::int64_t>();
   const auto num_forces = in.take<std::uint32_t>();
   for (std::uint32_t f = 0; f < num_forces; ++f) {
     const auto of_step = in.take<std::int64_t>();
@@ -110,6 +114,10 @@ std::vector<std::byte> encode(const CheckpointState& s) {
   out.put(s.interval);
   out.put(static_cast<std::uint8_t>(s.has_check));
   out.put(s.check);
+  out.put(s.check_particles);
+  for (const std::int64_t count :
+       {s.left_particles, s.left_contacts, s.left_wall_contacts, s.left_bonds})
+    out.put(count);
   out.put(static_cast<std::uint32_t>(s.plate_forces.size()));
   for (const SavedPlateForces& f : s.plate_forces) {
     out.put(f.of_step);

@@ -39,7 +39,11 @@ struct CheckpointState {
   std::int64_t check_step = 0;
   std::int32_t interval = 0;
   bool has_check = false;
-  std::array<double, 3> check{};
+  std::array<double, 4> check{};
+  std::int64_t check_particles = 0;
+
+  // What left the domain since the start, and the links that went with it.
+  std::int64_t left_particles = 0, left_contacts = 0, left_wall_contacts = 0, left_bonds = 0;
 
   std::vector<SavedPlateForces> plate_forces;
   std::vector<SavedWall> walls;

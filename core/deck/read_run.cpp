@@ -1,5 +1,6 @@
 // The run itself: domain, time, stages, search, output, checkpoints.
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -30,6 +31,19 @@ int longest_axis(const Domain& domain, int dimension) {
   return longest;
 }
 
+void read_outside(const TableReader& table, bool has_periodic, Domain& domain) {
+  const std::string outside = table.string("outside");
+  if (outside == "delete") domain.outside = OutsidePolicy::Delete;
+  if (outside != "periodic") return;
+  if (has_periodic) {
+    table.fail("outside", "[domain] has both periodic and outside = \"periodic\"",
+               "keep outside for all axes, or name the axes in periodic and say error or delete "
+               "for the others");
+  }
+  for (int axis = 0; axis < table.dimension(); ++axis)
+    domain.periodic[static_cast<std::size_t>(axis)] = true;
+}
+
 Domain read_domain(const TableReader& root) {
   const TableReader table(*root.table("domain"), root.dimension(), "[domain]");
   const Box box = read_corners(table, "the domain");
@@ -39,6 +53,7 @@ Domain read_domain(const TableReader& root) {
   for (const std::string& name : table.names("periodic")) {
     domain.periodic[axis_index(name, table.dimension(), table.place("periodic"))] = true;
   }
+  read_outside(table, table.has("periodic"), domain);
   const std::string strip_axis = table.string("strip_axis");
   domain.strip_axis = strip_axis == "longest"
                           ? longest_axis(domain, table.dimension())
@@ -80,6 +95,22 @@ Node empty_table(const TableReader& root) {
   return node;
 }
 
+LimitSpec read_limits(const TableReader& table) {
+  const auto limit = [&](std::string_view key) {
+    const double share = table.number(key);
+    return share > 0.0 ? share : std::numeric_limits<double>::infinity();
+  };
+  const LimitSpec limits{limit("overlap_warning"), limit("overlap_error")};
+  if (table.has("overlap_warning") && std::isfinite(limits.overlap_warning) &&
+      limits.overlap_warning > limits.overlap_error) {
+    table.fail("overlap_warning",
+               fmt::format("overlap_warning = {} is beyond overlap_error = {}",
+                           limits.overlap_warning, limits.overlap_error),
+               "warn below the error, or never: overlap_warning = 0");
+  }
+  return limits;
+}
+
 void read_options(const TableReader& root, Model& model) {
   const Node empty = empty_table(root);
   const auto node = [&](std::string_view key) { return root.has(key) ? root.table(key) : &empty; };
@@ -87,6 +118,8 @@ void read_options(const TableReader& root, Model& model) {
   model.search.kind =
       search.string("kind") == "cells" ? ContactSearchKind::Cells : ContactSearchKind::AllPairs;
   model.search.skin = search.optional_number("skin");
+
+  model.limits = read_limits(TableReader(*node("limits"), root.dimension(), "[limits]"));
 
   const TableReader output(*node("output"), root.dimension(), "[output]");
   model.output.series_every = output.integer("series_every");

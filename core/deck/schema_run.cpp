@@ -21,6 +21,7 @@ constexpr KeySpec kRunKeys[] = {
     {"deck", "wall", T::Tables, "", "none", "planes and plates"},
     {"deck", "stage", T::Tables, "", "one stage", "stretches of the run, in order"},
     {"deck", "search", T::Table, "", "none", "how contacts are found"},
+    {"deck", "limits", T::Table, "", "none", "beyond which a run is not to be trusted"},
     {"deck", "output", T::Table, "", "none", "what the run folder gets, and how often"},
     {"deck", "checkpoint", T::Table, "", "none", "when the run is saved"},
 
@@ -29,6 +30,10 @@ constexpr KeySpec kRunKeys[] = {
     {"[domain]", "periodic", T::Names, "", "none", "axes that wrap around, such as `[\"x\"]`"},
     {"[domain]", "strip_axis", T::Choice, "", "longest", "axis along which ranks own strips",
      "x|y|z|longest"},
+    {"[domain]", "outside", T::Choice, "", "error",
+     "what becomes of a particle that leaves: the run ends, it is taken out, or all axes wrap "
+     "around",
+     "error|delete|periodic"},
 
     {"[time]", "step", T::PositiveNumber, "s", "required", "time step"},
     {"[time]", "end", T::PositiveNumber, "s", "none",
@@ -51,6 +56,11 @@ constexpr KeySpec kRunKeys[] = {
      "cells|all-pairs"},
     {"[search]", "skin", T::NonNegativeNumber, "m", "chosen from the radii",
      "gap up to which a pair is kept as a candidate"},
+
+    {"[limits]", "overlap_warning", T::NonNegativeNumber, "", "0.5",
+     "share of the smaller radius; an overlap beyond it is warned of, once; 0 = never"},
+    {"[limits]", "overlap_error", T::NonNegativeNumber, "", "1",
+     "share of the smaller radius; an overlap beyond it ends the run; 0 = never"},
 
     {"[output]", "series_every", T::NonNegativeInteger, "steps", "0",
      "between rows of `series.csv`; 0 = a hundredth of the run"},

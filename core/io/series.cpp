@@ -1,5 +1,7 @@
 #include <barchan/core/io/series.hpp>
 
+#include <sys/stat.h>
+
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -53,7 +55,8 @@ SeriesWriter::SeriesWriter(std::string path, std::size_t num_further, const char
 SeriesWriter::SeriesWriter(SeriesWriter&& other) noexcept
     : path_(std::move(other.path_)),
       num_further_(other.num_further_),
-      file_(std::exchange(other.file_, nullptr)) {}
+      file_(std::exchange(other.file_, nullptr)),
+      size_(other.size_) {}
 
 SeriesWriter::~SeriesWriter() {
   if (file_ != nullptr) std::fclose(file_);
@@ -61,7 +64,8 @@ SeriesWriter::~SeriesWriter() {
 
 SeriesWriter SeriesWriter::create(const std::string& path,
                                   std::span<const std::string> further_columns) {
-  SeriesWriter series(path, further_columns.size(), "wb");
+  { const SeriesWriter emptied(path, 0, "wb"); }
+  SeriesWriter series(path, further_columns.size(), "ab");  // so that a file cut short shows
   series.put(header_of(further_columns) + "\n");
   return series;
 }
@@ -73,7 +77,9 @@ SeriesWriter SeriesWriter::resume(const std::string& path,
   OutputFile file(path);
   file.write(kept);
   file.commit();
-  return SeriesWriter(path, further_columns.size(), "ab");
+  SeriesWriter series(path, further_columns.size(), "ab");
+  series.size_ = static_cast<std::int64_t>(kept.size());
+  return series;
 }
 
 void SeriesWriter::append(const SeriesRow& row, std::span<const double> further) {
@@ -89,6 +95,12 @@ void SeriesWriter::put(const std::string& text) {
   if (std::fwrite(text.data(), 1, text.size(), file_) != text.size() || std::fflush(file_) != 0) {
     throw RunError("cannot write " + path_ + ": " + std::strerror(errno));
   }
+  size_ += static_cast<std::int64_t>(text.size());
+  struct stat now {};
+  if (::fstat(::fileno(file_), &now) != 0 || now.st_nlink == 0)
+    throw RunError(path_ + " was removed while the run was writing it");
+  if (S_ISREG(now.st_mode) && now.st_size != size_)
+    throw RunError(path_ + " was changed by somebody else while the run was writing it");
 }
 
 }  // namespace barchan

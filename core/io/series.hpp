@@ -35,7 +35,8 @@ class SeriesWriter {
   SeriesWriter(SeriesWriter&& other) noexcept;
   SeriesWriter& operator=(SeriesWriter&&) = delete;
 
-  /// @pre further has one value for each further column @throws RunError
+  /// @pre further has one value for each further column
+  /// @throws RunError also when somebody else removed or changed the file meanwhile
   void append(const SeriesRow& row, std::span<const double> further);
 
  private:
@@ -45,6 +46,7 @@ class SeriesWriter {
   std::string path_;
   std::size_t num_further_ = 0;
   std::FILE* file_ = nullptr;
+  std::int64_t size_ = 0;  ///< [B], so far
 };
 
 }  // namespace barchan

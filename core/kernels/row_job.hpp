@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 
 namespace barchan {
 
@@ -19,9 +21,20 @@ struct RowJob {
   double kick = 0.0, dt = 0.0;
   double gravity[3] = {};
   double local_damping = 0.0;
+  double most_speed =
+      std::numeric_limits<double>::infinity();  ///< of a component of velocity [m/s]
 };
 
-/// Returns an upper bound of the speeds that these rows drifted with [m/s].
-using RowKernel = double (*)(const RowJob&);
+/// How fast rows drifted.
+struct RowSpeeds {
+  double top = 0.0;        ///< upper bound [m/s]; 3D, where lists of near pairs rest on it
+  bool is_beyond = false;  ///< some component is beyond the job's most_speed, or no number
+  void add(const RowSpeeds& other) {
+    top = std::max(top, other.top);
+    is_beyond = is_beyond || other.is_beyond;
+  }
+};
+
+using RowKernel = RowSpeeds (*)(const RowJob&);
 
 }  // namespace barchan

@@ -11,6 +11,12 @@ struct Quad : simd::Avx2 {
     return Real(
         _mm256_and_pd(_mm256_cmp_pd(__m256d(m), _mm256_setzero_pd(), _CMP_GT_OQ), __m256d(a)));
   }
+  /// All bits where |a| is more than the limit or no number.
+  BARCHAN_INLINE Real beyond(Real a, Real limit) {
+    return Real(_mm256_cmp_pd(__m256d(abs(a)), __m256d(limit), _CMP_NLE_UQ));
+  }
+  BARCHAN_INLINE Real either(Real a, Real b) { return Real(_mm256_or_pd(__m256d(a), __m256d(b))); }
+  BARCHAN_INLINE bool has_any(Real a) { return _mm256_movemask_pd(__m256d(a)) != 0; }
 };
 
 }  // namespace

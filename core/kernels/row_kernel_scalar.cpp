@@ -34,6 +34,14 @@ struct Quad {
     for (int c = 0; c < 4; ++c) top.a[c] = p.a[c] > q.a[c] ? p.a[c] : q.a[c];
     return top;
   }
+  /// 1 where |r| is more than the limit or no number.
+  static Real beyond(const Real& r, const Real& limit) {
+    Real is{};
+    for (int c = 0; c < 4; ++c) is.a[c] = std::fabs(r.a[c]) <= limit.a[c] ? 0.0 : 1.0;
+    return is;
+  }
+  static Real either(const Real& p, const Real& q) { return p + q; }
+  static bool has_any(const Real& r) { return r.a[0] + r.a[1] + r.a[2] + r.a[3] > 0.0; }
   static Real abs(const Real& r) {
     return {std::fabs(r.a[0]), std::fabs(r.a[1]), std::fabs(r.a[2]), std::fabs(r.a[3])};
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include <barchan/core/kernels/row_job.hpp>
 
@@ -16,11 +17,14 @@ template <class Q, bool Damped>
 }
 
 template <class Q, int Dim, bool Damped>
-double advance_rows(const RowJob& job) {
+RowSpeeds advance_rows(const RowJob& job) {
   const double k = job.kick;
   auto top = Q::set(0.0);
   const auto alpha = Q::set(job.local_damping);
   const auto zero = Q::set(0.0);
+  const double most = job.most_speed, any = std::numeric_limits<double>::infinity();
+  const auto limit = Q::of(most, most, Dim == 3 ? most : any, any);
+  auto fast = Q::beyond(zero, zero);
   if constexpr (Dim == 2) {
     const auto gain = Q::of(k, k, 2.0 * k, 0.0), drift = Q::of(job.dt, job.dt, 0.0, 0.0);
     const auto gravity = Q::of(job.gravity[0] * k, job.gravity[1] * k, 0.0, 0.0);
@@ -30,8 +34,8 @@ double advance_rows(const RowJob& job) {
       const auto v = Q::load(x + 4), im = Q::last(v);
       const auto dv = Q::load(f) * (im * gain) + Q::where_positive(im, gravity);
       const auto w = kicked<Q, Damped>(v, dv, alpha);
+      fast = Q::either(fast, Q::beyond(w, limit));
       Q::store(x + 4, w);
-      top = Q::max(top, Q::abs(w));
       Q::store(x, Q::load(x) + drift * w);
       Q::store(f, zero);
     }
@@ -46,6 +50,7 @@ double advance_rows(const RowJob& job) {
       const auto v = Q::load(x + 4), im = Q::last(v);
       const auto dv = Q::load(f) * (im * gain) + Q::where_positive(im, gravity);
       const auto w = kicked<Q, Damped>(v, dv, alpha);
+      fast = Q::either(fast, Q::beyond(w, limit));
       Q::store(x + 4, w);
       top = Q::max(top, Q::abs(w));
       Q::store(x, Q::load(x) + drift * w);
@@ -57,8 +62,8 @@ double advance_rows(const RowJob& job) {
   }
   alignas(32) double speed[4];
   Q::store(speed, top);
-  return std::sqrt(speed[0] * speed[0] + speed[1] * speed[1] +
-                   (Dim == 3 ? speed[2] * speed[2] : 0.0));
+  return {std::sqrt(speed[0] * speed[0] + speed[1] * speed[1] + speed[2] * speed[2]),
+          Q::has_any(fast)};
 }
 
 template <class Q>

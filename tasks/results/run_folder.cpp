@@ -39,7 +39,8 @@ bool is_snapshot(const fs::path& file) {
 }
 
 void remove_results(const std::string& path) {
-  for (const char* name : {"run.json", "series.csv", "picture.png", "trace.json"})
+  for (const char* name :
+       {"run.json", "series.csv", "picture.png", "trace.json", "log.txt", "left_domain.csv"})
     fs::remove(path + "/" + name);
   fs::remove_all(path + "/checkpoints");
   const fs::path snapshots = path + "/snapshots";

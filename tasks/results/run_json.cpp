@@ -94,6 +94,7 @@ Json contract_of(const RunSummary& s) {
           {"threads", s.threads},
           {"exchange", s.exchange},
           {"schedule", s.schedule},
+          {"progress", s.progress},
           {"contact_search", s.contact_search},
           {"transport", s.transport},
           {"particles", s.particles},
@@ -124,6 +125,10 @@ void add_further(const RunSummary& s, Json& json) {
   json["stable_step"] =
       s.limit ? Json{{"seconds", s.limit->step}, {"limit", s.limit->what}} : Json(nullptr);
   json["max_overlap"] = s.measures.max_overlap;
+  json["max_overlap_share"] = s.measures.max_overlap_share;
+  json["left_domain"] = {{"particles", s.left.particles},
+                         {"contacts", s.left.links.contacts + s.left.links.wall_contacts},
+                         {"bonds", s.left.links.bonds}};
   json["max_speed"] = s.measures.max_speed;
   json["momentum"] = momentum_of(s);
   json["bonds"] = s.measures.bonds;

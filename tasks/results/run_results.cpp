@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include <barchan/tasks/results/agree.hpp>
+#include <barchan/tasks/results/departure_table.hpp>
 #include <barchan/tasks/results/final_picture.hpp>
 
 namespace barchan {
@@ -36,6 +39,8 @@ RunResults::RunResults(Simulation& simulation, RunFolder folder, const ParticleS
     if (simulation.communicator().is_root()) spec_.continues ? folder_.resume() : folder_.begin();
   });
   const bool continues = spec_.continues;
+  log_.emplace(simulation, folder_.file("log.txt"), continues);
+  list_departures();
   series_.emplace(simulation, folder_.file("series.csv"), spec_.rings, continues);
   if (continues) {
     snapshots_.resume(simulation, snapshots_every_);
@@ -52,8 +57,25 @@ std::int64_t RunResults::next_step() const {
   return std::min(next_multiple(step, series_every_), next_multiple(step, snapshots_every_));
 }
 
+void RunResults::list_departures() {
+  agree(simulation_.communicator(), [&] {
+    if (!simulation_.communicator().is_root()) return;
+    const DepartureTable table(folder_.file("left_domain.csv"), simulation_.model().dimension,
+                               simulation_.step());
+    simulation_.on_departure([table](std::span<const Departure> left) { table.append(left); });
+  });
+}
+
+void RunResults::write_failed() {
+  const std::int64_t step = simulation_.step();
+  log_->take_notes(simulation_);
+  if (step != last_row_) series_->append(simulation_);
+  if (step != snapshots_.last_step()) snapshots_.write(simulation_);
+}
+
 void RunResults::write() {
   const std::int64_t step = simulation_.step();
+  log_->take_notes(simulation_);
   if (step % series_every_ == 0 && step != last_row_) {
     series_->append(simulation_);
     last_row_ = step;
@@ -63,6 +85,7 @@ void RunResults::write() {
 
 RunSummary RunResults::finish(bool interrupted) {
   const std::int64_t step = simulation_.step();
+  log_->take_notes(simulation_);
   if (step != last_row_) series_->append(simulation_);
   last_row_ = step;
   if (step != snapshots_.last_step()) snapshots_.write(simulation_);
@@ -72,6 +95,7 @@ RunSummary RunResults::finish(bool interrupted) {
   agree(simulation_.communicator(), [&] {
     if (simulation_.communicator().is_root()) write_run_json(folder_.file("run.json"), summary);
   });
+  log_->add(fmt::format("{} at step {}", interrupted ? "interrupted" : "done", step));
   return summary;
 }
 

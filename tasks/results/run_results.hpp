@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <barchan/tasks/results/run_folder.hpp>
+#include <barchan/tasks/results/run_log.hpp>
 #include <barchan/tasks/results/run_summary.hpp>
 #include <barchan/tasks/results/series_table.hpp>
 #include <barchan/tasks/results/snapshots.hpp>
@@ -42,14 +43,20 @@ class RunResults {
   [[nodiscard]] std::int64_t next_step()
       const;     ///< at which something is due; after the present one
   void write();  ///< what is due at the present step
+  /// After an AgreedError: a row and a snapshot of the state as it is.
+  void write_failed();
+  [[nodiscard]] RunLog& log() { return *log_; }
   /// The last row and snapshot, the picture and run.json. @return complete on rank 0
   RunSummary finish(bool interrupted = false);
 
  private:
+  void list_departures();
+
   Simulation& simulation_;
   RunFolder folder_;
   ResultsSpec spec_;
   std::int64_t series_every_, snapshots_every_;
+  std::optional<RunLog> log_;
   std::optional<SeriesTable> series_;
   SnapshotWriter snapshots_;
   std::int64_t last_row_ = -1;

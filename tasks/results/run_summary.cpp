@@ -111,6 +111,7 @@ RunSummary summarize(Simulation& simulation, const std::string& deck,
   summary.choice = simulation.exchange_choice();
   summary.exchange = summary.ranks > 1 ? summary.choice.name : options.exchange;
   summary.schedule = options.schedule == Schedule::Overlap ? "overlap" : "sequential";
+  summary.progress = options.progress == Progress::Poll ? "poll" : "thread";
   const bool is_all_pairs =
       options.search.value_or(model.search.kind) == ContactSearchKind::AllPairs;
   summary.contact_search = is_all_pairs ? "all-pairs" : "cells";
@@ -128,6 +129,7 @@ RunSummary summarize(Simulation& simulation, const std::string& deck,
   summary.wall_specs = model.walls;
   summary.walls.assign(simulation.walls().begin(), simulation.walls().end());
   summary.digest = simulation.digest();
+  summary.left = simulation.left_domain();
   summary.interrupted = interrupted;
   const std::string mine = own_numbers(simulation);
   const auto of_ranks = simulation.communicator().gather(mine);

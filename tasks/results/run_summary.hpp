@@ -25,7 +25,7 @@ struct RunSummary {
   std::string version, deck, title;
   int dimension = 2;
   int ranks = 1, threads = 1;  ///< threads per rank
-  std::string exchange, schedule, contact_search, transport, vector;
+  std::string exchange, schedule, progress, contact_search, transport, vector;
   Machine machine;
   std::int64_t particles = 0, steps = 0;
   double dt = 0.0, time = 0.0;  ///< [s]
@@ -46,6 +46,7 @@ struct RunSummary {
   std::vector<WallSpec> wall_specs;
   std::vector<WallState> walls;
   std::uint64_t digest = 0;
+  LeftDomain left;
   bool interrupted = false;
 
   [[nodiscard]] double particle_steps_per_second() const;

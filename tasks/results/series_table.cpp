@@ -23,6 +23,7 @@ std::vector<std::string> columns_of(const Model& model, const std::vector<Ring>&
   add_vector("momentum");
   for (const char* name : {"bonds", "broken_bonds", "max_speed", "stage"})
     columns.emplace_back(name);
+  if (model.domain.outside == OutsidePolicy::Delete) columns.emplace_back("particles");
   for (const WallSpec& wall : model.walls) {
     add_vector(column_name(wall.name) + "_force");
     if (moves(wall)) add_vector(column_name(wall.name) + "_position");
@@ -41,6 +42,8 @@ std::vector<double> values_of(const Simulation& simulation, const Measures& m,
   for (int c = 0; c < model.dimension; ++c) values.push_back(m.momentum[c].value());
   values.insert(values.end(), {static_cast<double>(m.bonds), static_cast<double>(m.broken_bonds),
                                m.max_speed, static_cast<double>(simulation.stage() + 1)});
+  if (model.domain.outside == OutsidePolicy::Delete)
+    values.push_back(static_cast<double>(simulation.num_particles()));
   const auto walls = simulation.walls();
   for (std::size_t w = 0; w < walls.size(); ++w) {
     for (int c = 0; c < model.dimension; ++c) values.push_back(walls[w].force[c]);

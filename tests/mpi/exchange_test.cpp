@@ -50,6 +50,7 @@ std::vector<std::byte> message_of(int rank, Side side, int step, std::size_t len
 struct Case {
   std::string exchange;
   bool is_periodic = false;
+  int ranks_per_node = 0;
 };
 
 class ExchangeOfEveryKind : public testing::TestWithParam<Case> {
@@ -57,7 +58,8 @@ class ExchangeOfEveryKind : public testing::TestWithParam<Case> {
   ExchangeOfEveryKind()
       : neighbours_(strip_neighbours(comm_.rank(), comm_.size(), GetParam().is_periodic)) {}
 
-  std::unique_ptr<Exchange> make(const ExchangeOptions& options = {}) {
+  std::unique_ptr<Exchange> make(ExchangeOptions options = {}) {
+    options.ranks_per_node = GetParam().ranks_per_node;
     return make_exchange(GetParam().exchange, comm_, neighbours_, options);
   }
 
@@ -231,6 +233,13 @@ std::vector<Case> every_case() {
     cases.push_back({name, false});
     cases.push_back({name, true});
   }
+  for (const char* mix :
+       {"shared+put-inband", "put-flag+isend", "shared+sendrecv", "isend+pscw", "get+get"}) {
+    cases.push_back({mix, true, 2});
+  }
+  cases.push_back({"shared+put-inband", false, 2});
+  cases.push_back({"shared+isend", false, 1});  // no two ranks on one node
+  cases.push_back({"shared+isend", true, 4});   // all on one
   return cases;
 }
 
@@ -238,6 +247,9 @@ INSTANTIATE_TEST_SUITE_P(Comm, ExchangeOfEveryKind, testing::ValuesIn(every_case
                          [](const auto& instance) {
                            std::string name = instance.param.exchange;
                            std::ranges::replace(name, '-', '_');
+                           std::ranges::replace(name, '+', '_');
+                           const int on_node = instance.param.ranks_per_node;
+                           if (on_node > 0) name += "_" + std::to_string(on_node) + "_a_node";
                            return name + (instance.param.is_periodic ? "_periodic" : "_open");
                          });
 
@@ -251,6 +263,31 @@ TEST(Exchange, TellsTheKnownNamesWhenAskedForAnUnknownOne) {
     EXPECT_NE(std::string(error.what()).find("put-flag"), std::string::npos) << error.what();
     EXPECT_NE(std::string(error.what()).find("sendrecv"), std::string::npos) << error.what();
   }
+}
+
+TEST(Exchange, MixesUseEachKindWhereItsNeighboursAre) {
+  const auto comm = Communicator::world();
+  if (comm.size() < 3) GTEST_SKIP() << "needs links of both kinds";
+  const auto neighbours = strip_neighbours(comm.rank(), comm.size(), false);
+  ExchangeOptions options;
+  options.ranks_per_node = 2;
+
+  const auto exchange = make_exchange("shared+isend", comm, neighbours, options);
+
+  EXPECT_EQ(exchange->stats().transport, "shared memory and two-sided");
+}
+
+TEST(Exchange, RefusesAFenceInAMixAndMessagesThatDoNotFitIntoMemory) {
+  const auto comm = Communicator::world();
+  const auto neighbours = strip_neighbours(comm.rank(), comm.size(), false);
+  ExchangeOptions options;
+
+  EXPECT_THROW(static_cast<void>(make_exchange("fence+isend", comm, neighbours, options)),
+               InputError);
+  EXPECT_THROW(static_cast<void>(make_exchange("shared+put-flg", comm, neighbours, options)),
+               InputError);
+  options.halo_bytes = std::size_t{1} << 45;
+  EXPECT_THROW(static_cast<void>(make_exchange("put-flag", comm, neighbours, options)), InputError);
 }
 
 TEST(Exchange, PutFlagIsTheFirstName) {

@@ -69,7 +69,7 @@ TEST_F(Probe, ChoosesOneExchangeOnAllRanksAndMovesMessagesWithIt) {
 
   const SelectedExchange selected = select_exchange(comm_, neighbours_, {}, 1000, {50e-6, 2});
 
-  const auto& names = auto_candidates();
+  const auto names = auto_candidates(count_links(comm_, neighbours_));
   const auto place = std::ranges::find(names, selected.choice.name) - names.begin();
   double most = static_cast<double>(place), least = most;
   comm_.allreduce_max(std::span(&most, 1));

@@ -99,7 +99,9 @@ Outcome reference_of(const Scenario& s) {
 /// One run for each exchange; everything else takes turns, so that all pairs of choices meet over
 /// the scenarios.
 std::vector<RunOptions> variants(unsigned turn) {
-  const auto exchanges = exchange_choices();
+  auto exchanges = exchange_choices();
+  const std::array<const char*, 3> mixes{"shared+put-inband", "put-flag+isend", "shared+sendrecv"};
+  exchanges.emplace_back(mixes[turn % mixes.size()]);
   const auto widths = vector_widths();
   std::vector<RunOptions> all;
   for (std::size_t e = 0; e < exchanges.size(); ++e) {
@@ -112,6 +114,8 @@ std::vector<RunOptions> variants(unsigned turn) {
     o.vector = name_of(widths[(q + turn / 2) % widths.size()]);
     o.max_delay_seconds = (q / 3) % 2 == 0 ? 1e-4 : 0.0;
     o.delay_seed = 17 * q + 1;
+    o.progress = q % 4 == 1 ? Progress::Thread : Progress::Poll;
+    o.ranks_per_node = 2;
     all.push_back(o);
   }
   return all;
@@ -119,8 +123,9 @@ std::vector<RunOptions> variants(unsigned turn) {
 
 std::string describe(const RunOptions& o) {
   return fmt::format(
-      "{} ranks, exchange {}, {} threads, {}, {}, {}, delays up to {} s", num_ranks(), o.exchange,
+      "{} ranks, exchange {}, {} threads, {}{}, {}, {}, delays up to {} s", num_ranks(), o.exchange,
       o.threads, o.schedule == Schedule::Overlap ? "overlap" : "sequential",
+      o.progress == Progress::Thread ? " by a thread" : "",
       o.search == ContactSearchKind::Cells ? "cells" : "all-pairs", o.vector, o.max_delay_seconds);
 }
 

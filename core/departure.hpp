@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+
+namespace barchan {
+
+/// A particle that is out of the domain, as it was when that was noticed. Plain data: it travels
+/// between ranks.
+struct Departure {
+  std::int64_t step = 0;
+  std::int64_t id = 0;
+  double position[3] = {};  ///< [m]
+  double velocity[3] = {};  ///< [m/s]
+};
+
+/// What overlaps most, as a share of the smaller radius.
+struct WorstOverlap {
+  double share = 0.0;
+  double overlap = 0.0;     ///< [m]
+  std::int64_t id = 0;      ///< of the particle; 0: nothing overlaps
+  std::int64_t with = 0;    ///< id of the other particle, or
+  std::int32_t wall = -1;   ///< the number of a wall
+  double position[3] = {};  ///< [m], of the particle
+};
+
+/// Contacts with history, contacts with walls that have one, and bonds; each counted on one lane.
+struct LinkCounts {
+  std::int64_t contacts = 0, wall_contacts = 0, bonds = 0;
+};
+
+/// What a lane can be made to lose in its next rebuild, to show that it is noticed.
+enum class Loss { Nothing, Particle, Contact, WallContact, Bond };
+
+}  // namespace barchan

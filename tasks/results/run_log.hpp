@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <barchan/tasks/simulation.hpp>
+
+namespace barchan {
+
+/// `log.txt` of a run folder: a line for everything that a run did beside its steps. Each line is
+/// on its way to the disk before the call returns. Rank 0 writes; a log that cannot be written
+/// is given up, since no result depends on it.
+class RunLog {
+ public:
+  /// @param continues  goes on with the log that is there
+  RunLog(const Simulation& simulation, std::string path, bool continues);
+
+  /// Takes the notes of all ranks. Collective.
+  void take_notes(Simulation& simulation);
+  /// A line of the caller. On rank 0; elsewhere nothing happens. Local.
+  void add(const std::string& line);
+  /// Warnings among the notes, since the last call. On rank 0; local.
+  [[nodiscard]] std::vector<std::string> take_warnings();
+
+ private:
+  std::string path_;  ///< empty where nothing is written
+  std::string last_checkpoint_;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace barchan
