@@ -4,11 +4,10 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include <barchan/app/commands.hpp>
 #include <barchan/app/loaded_deck.hpp>
 #include <barchan/app/readable.hpp>
+#include <barchan/app/run_view.hpp>
 #include <barchan/core/error.hpp>
 #include <barchan/core/io/particle_file.hpp>
 #include <barchan/core/io/text_file.hpp>
@@ -19,59 +18,8 @@ namespace fs = std::filesystem;
 namespace barchan::app {
 namespace {
 
-using Rows = std::vector<std::vector<std::string>>;
-using Json = nlohmann::json;
-
 void print(const std::string& path, const std::string& what, const Rows& rows) {
   std::printf("%s: %s\n%s", path.c_str(), what.c_str(), table(rows, 2).c_str());
-}
-
-std::string word(const Json& json, const char* key) {
-  const auto it = json.find(key);
-  if (it == json.end()) return "?";
-  return it->is_string() ? it->get<std::string>() : it->dump();
-}
-
-double number(const Json& json, const char* key) {
-  const auto it = json.find(key);
-  return it != json.end() && it->is_number() ? it->get<double>() : 0.0;
-}
-
-std::int64_t whole(const Json& json, const char* key) {
-  return static_cast<std::int64_t>(number(json, key));
-}
-
-Json read_run_json(const std::string& path) {
-  try {
-    Json json = Json::parse(read_text_file(path));
-    if (json.is_object() && json.contains("state_digest")) return json;
-  } catch (const Json::exception&) {  // falls through to the same message
-  }
-  throw InputError(SourcePlace{path, 0, 0}, "is no run.json of barchan",
-                   "give a run's folder or its run.json");
-}
-
-Rows run_rows(const Json& run) {
-  const Json communication = run.value("communication", Json::object());
-  const Json energy = run.value("energy", Json::object());
-  Rows rows{
-      {"deck", word(run, "deck")},
-      {"particles", grouped(whole(run, "particles"))},
-      {"ranks", word(run, "ranks") + " × " + word(run, "threads") + " threads"},
-      {"exchange",
-       word(run, "exchange") + " (" + word(run, "transport") + "), " + word(run, "schedule")},
-      {"steps", fmt::format("{} of {:g} s: {:.6g} s simulated", grouped(whole(run, "steps")),
-                            number(run, "dt"), number(run, "time"))},
-      {"loop", fmt::format("{}, {} particle-steps/s", readable_seconds(number(run, "loop_seconds")),
-                           readable_rate(number(run, "particle_steps_per_second")))},
-      {"hidden", percent(number(communication, "hidden_fraction")) + " of communication"},
-      {"contacts", grouped(whole(run, "contacts"))},
-      {"energy", fmt::format("kinetic {:.4g} J, potential {:.4g} J", number(energy, "kinetic"),
-                             number(energy, "potential"))},
-      {"digest", word(run, "state_digest")},
-      {"version", word(run, "version")}};
-  if (run.value("interrupted", false)) rows.push_back({"note", "interrupted before its last step"});
-  return rows;
 }
 
 void show_folder(const std::string& path) {
@@ -84,7 +32,7 @@ void show_folder(const std::string& path) {
         is_started ? "wait for it, or run it again"
                    : "give a run's folder, a snapshot, a particle file or a deck");
   }
-  Rows rows = run_rows(read_run_json(json));
+  Rows rows = run_rows(read_text_file(json), json);
   if (fs::exists(path + "/snapshots/run.pvd")) {
     rows.push_back({"snapshots", std::to_string(read_pvd(path + "/snapshots/run.pvd").size())});
   }
@@ -141,17 +89,8 @@ void show_particles(const std::string& path) {
 
 bool show_series(const std::string& path) {
   const std::string text = read_text_file(path);
-  if (!text.starts_with("step,time,")) return false;
-  LineReader lines(text, path);
-  std::string_view line, last;
-  std::int64_t rows = -1;
-  while (lines.next(line)) {
-    ++rows;
-    last = line;
-  }
-  Rows shown{{"rows", grouped(rows)}};
-  if (rows > 0) shown.push_back({"last", fmt::format("step {}", last.substr(0, last.find(',')))});
-  print(path, "a series over time", shown);
+  if (!is_series(text)) return false;
+  print(path, "a series over time", series_rows(text, path));
   return true;
 }
 
@@ -179,7 +118,7 @@ void show_info(const std::string& path) {
   if (path.ends_with(".toml")) return show_deck(path);
   if (path.ends_with(".pvd")) return show_pvd(path);
   if (path.ends_with(".json"))
-    return print(path, "a run in numbers", run_rows(read_run_json(path)));
+    return print(path, "a run in numbers", run_rows(read_text_file(path), path));
   if (path.ends_with(".csv") && show_series(path)) return;
   for (const char* ending : {".csv", ".data", ".lmp", ".vtp", ".pvtp"}) {
     if (path.ends_with(ending)) return show_particles(path);

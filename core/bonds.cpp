@@ -74,10 +74,11 @@ void BondSet<Dim>::resolve(ParticleStore<Dim>& store) {
   for (const Bond<Dim>& b : bonds_) {
     const std::int32_t i = find(b.id_a), j = find(b.id_b);
     if (i < 0 || j < 0) {
-      throw RunError("the bond between particles " + std::to_string(b.id_a) + " and " +
-                     std::to_string(b.id_b) +
-                     " has grown longer than the halo is wide: give it a tensile strength, or a "
-                     "larger search.skin");
+      throw RunError(
+          "the bond between particles " + std::to_string(b.id_a) + " and " +
+          std::to_string(b.id_b) +
+          " has grown longer than a cell is wide: give it a tensile strength, or a larger "
+          "search.skin");
     }
     const auto index = static_cast<std::int32_t>(ends_.size());
     ends_.emplace_back(i, j);

@@ -36,18 +36,22 @@ void ExactSum::add(double term) {
   }
 }
 
+void ExactSum::carry() {
+  for (std::size_t d = 0; d + 1 < kNumeric; ++d) {
+    const std::int64_t carry = digits_[d] >> 32;
+    digits_[d] -= carry * (std::int64_t{1} << 32);
+    digits_[d + 1] += carry;
+  }
+}
+
 double ExactSum::value() const {
   if (digits_[kNumeric] != 0) return std::numeric_limits<double>::quiet_NaN();
-  // Carry upwards, so that digits below the top are in [0, 2^32); then add from the top.
-  Digits carried = digits_;
-  for (std::size_t d = 0; d + 1 < kNumeric; ++d) {
-    const std::int64_t carry = carried[d] >> 32;
-    carried[d] -= carry * (std::int64_t{1} << 32);
-    carried[d + 1] += carry;
-  }
+  ExactSum carried = *this;
+  carried.carry();
   double sum = 0.0;
   for (int d = kNumeric - 1; d >= 0; --d) {
-    sum += std::ldexp(static_cast<double>(carried[static_cast<std::size_t>(d)]), kLowest + 32 * d);
+    sum += std::ldexp(static_cast<double>(carried.digits_[static_cast<std::size_t>(d)]),
+                      kLowest + 32 * d);
   }
   return sum;
 }

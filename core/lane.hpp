@@ -14,6 +14,7 @@
 #include <barchan/core/departure.hpp>
 #include <barchan/core/grid.hpp>
 #include <barchan/core/kernels/kernel_set.hpp>
+#include <barchan/core/lane_messages.hpp>
 #include <barchan/core/pair_list.hpp>
 #include <barchan/core/particle_store.hpp>
 #include <barchan/core/walls.hpp>
@@ -217,15 +218,6 @@ class Lane {
   World<Dim>& world() { return *world_; }
   [[nodiscard]] const World<Dim>& world() const { return *world_; }
 
-  /// A contact's spring on its way from old lists to new ones; oriented from the handle to the
-  /// partner.
-  struct LooseContact {
-    std::int32_t handle =
-        0;  ///< row: before order() a source row, in messages the migrant's number
-    std::int64_t partner = 0;
-    double spring[L::kSprings] = {};
-  };
-
  private:
   struct Block {
     int list = 0;
@@ -285,8 +277,8 @@ class Lane {
   Slot slot(std::int32_t a, std::int32_t b);
   std::int32_t find_near(std::int32_t row, std::int64_t id) const;
   void place(std::int32_t a, std::int32_t b, const double* spring_a_to_b);
-  void collect_loose(std::vector<std::vector<LooseContact>>& leaving,
-                     const std::vector<std::int8_t>& goes, const std::vector<std::int32_t>& number);
+  void collect_loose(std::array<Migration<Dim>, 2>& leaving, const std::vector<std::int8_t>& goes,
+                     const std::vector<std::int32_t>& number);
 
   World<Dim>* world_;
   StepFrame frame_;
@@ -304,6 +296,7 @@ class Lane {
   std::vector<Block> blocks_;
   std::vector<int> chunks_{0};  ///< first block of each chunk, and the end
   std::int32_t rows_done_ = 0;
+  std::int64_t steps_since_start_ = 0;
   SearchSeconds search_seconds_;
   int slab_begin_ = 0, slab_end_ = 0;
   double last_distance2_ = 0.0;  ///< of the last step with the lists before these
@@ -325,7 +318,7 @@ class Lane {
   // between begin_rebuild and restore_history
   std::vector<std::int32_t> new_row_;  ///< of every source row; -1: left
   std::vector<std::int8_t> goes_;      ///< of every source row: 0 stays, 1 left, 2 right, kGone
-  std::vector<LooseContact> loose_;
+  std::vector<LooseContact<Dim>> loose_;
 
   std::vector<std::int64_t> removed_;  ///< ids that go in the next rebuild, ascending
   LinkCounts imbalance_;

@@ -87,6 +87,7 @@ void Lane<Dim>::save(CheckpointShare& share) {
   share.outruns.push_back(last_distance2_);
   share.totals.push_back(bonds_.num_broken());
   for (std::size_t w = 0; w < world_->walls.size(); ++w) {
+    if (w < wall_sums_.size()) wall_sums_[w].work.carry();
     const auto digits = w < wall_sums_.size() ? wall_sums_[w].work.digits() : ExactSum::Digits{};
     share.totals.insert(share.totals.end(), digits.begin(), digits.end());
   }
@@ -134,7 +135,7 @@ void Lane<Dim>::queue_links(const CheckpointShare& share,
     const auto first = row_of.find(ends[0]), second = row_of.find(ends[1]);
     if (first == row_of.end() && second == row_of.end()) continue;
     const bool is_second = first == row_of.end();
-    LooseContact c{is_second ? second->second : first->second, ends[is_second ? 0 : 1], {}};
+    LooseContact<Dim> c{is_second ? second->second : first->second, ends[is_second ? 0 : 1], {}};
     for (std::size_t q = 0; q < L::kSprings; ++q) {
       const double s = share.contact_springs[k * L::kSprings + q];
       c.spring[q] = Dim == 3 && is_second ? -s : s;

@@ -34,7 +34,7 @@ void require_short_bonds(const Grid<Dim>& grid, const ParticleStore<Dim>& store,
 }  // namespace
 
 template <int Dim>
-void Lane<Dim>::collect_loose(std::vector<std::vector<LooseContact>>& leaving,
+void Lane<Dim>::collect_loose(std::array<Migration<Dim>, 2>& leaving,
                               const std::vector<std::int8_t>& goes,
                               const std::vector<std::int32_t>& number) {
   unpack_history();
@@ -59,7 +59,7 @@ void Lane<Dim>::collect_loose(std::vector<std::vector<LooseContact>>& leaving,
         if (!store_.is_owned(ends[e])) continue;
         const auto own = static_cast<std::size_t>(ends[e]);
         if (goes[own] == kGone) continue;
-        LooseContact c{ends[e], store_.id[static_cast<std::size_t>(ends[1 - e])], {}};
+        LooseContact<Dim> c{ends[e], store_.id[static_cast<std::size_t>(ends[1 - e])], {}};
         for (int q = 0; q < L::kSprings; ++q) {
           const double s = list.template springs<Dim>(k)[q * kBatch];
           c.spring[q] = Dim == 3 && e == 1 ? -s : s;
@@ -68,7 +68,7 @@ void Lane<Dim>::collect_loose(std::vector<std::vector<LooseContact>>& leaving,
           loose_.push_back(c);
         } else {
           c.handle = number[own];
-          leaving[static_cast<std::size_t>(goes[own] - 1)].push_back(c);
+          leaving[static_cast<std::size_t>(goes[own] - 1)].contacts.push_back(c);
         }
       }
     }
@@ -164,7 +164,7 @@ void Lane<Dim>::restore_history() {
     place(new_row_[static_cast<std::size_t>(c.i)], new_row_[static_cast<std::size_t>(c.j)], c.spring);
   }
   kept_.clear();
-  for (const LooseContact& c : loose_) {
+  for (const LooseContact<Dim>& c : loose_) {
     const std::int32_t row = new_row_[static_cast<std::size_t>(c.handle)];
     const std::int32_t partner = find_near(row, c.partner);
     if (partner >= 0) place(row, partner, c.spring);

@@ -229,7 +229,7 @@ template <int Dim>
 std::size_t Lane<Dim>::bytes() const {
   std::size_t total = store_.bytes() + bonds_.bytes() + planes_.bytes() +
                       kept_.capacity() * sizeof(KeptContact) +
-                      loose_.capacity() * sizeof(LooseContact) + 8 * row_begin_.capacity() +
+                      loose_.capacity() * sizeof(LooseContact<Dim>) + 8 * row_begin_.capacity() +
                       4 * (cells_.start.capacity() + new_row_.capacity()) +
                       blocks_.capacity() * sizeof(Block) +
                       walls_.list().capacity() * sizeof(WallContact<Dim>);

@@ -11,27 +11,6 @@ namespace barchan {
 namespace {
 
 template <int Dim>
-struct ParticleRecord {
-  std::int64_t id, key;
-  double motion[8];
-  double spin[Dim == 3 ? 4 : 1];
-  double external[Layout<Dim>::kForce];
-  std::uint8_t type, flags, has_external;
-};
-
-template <int Dim>
-struct WallRecord {
-  std::int32_t number, wall;
-  double spring[Layout<Dim>::kSprings];
-};
-
-template <int Dim>
-struct BondRecord {
-  Bond<Dim> bond;
-  std::uint8_t is_current;  ///< the sender computes this bond; its state replaces the receiver's
-};
-
-template <int Dim>
 ParticleRecord<Dim> record_of(const ParticleStore<Dim>& s, std::int32_t row) {
   ParticleRecord<Dim> r{};
   const auto at = static_cast<std::size_t>(row);
@@ -99,7 +78,7 @@ void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byt
   const std::int32_t n = store_.num_owned;
   goes_.assign(static_cast<std::size_t>(n), 0);
   std::vector<std::int32_t> number(static_cast<std::size_t>(n), 0);
-  std::array<std::vector<ParticleRecord<Dim>>, 2> leavers;
+  std::array<Migration<Dim>, 2> out;
   for (std::int32_t i = 0; i < n; ++i) {
     world_->grid.wrap(store_.x(i));
     const auto at = static_cast<std::size_t>(i);
@@ -108,15 +87,13 @@ void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byt
         direction_of(static_cast<int>(store_.key[at] / world_->grid.slab_size())));
     if (is_removed(i) || loses(Loss::Particle)) goes_[at] = kGone;
     if (goes_[at] == 0 || goes_[at] == kGone) continue;
-    auto& out = leavers[static_cast<std::size_t>(goes_[at] - 1)];
-    number[at] = static_cast<std::int32_t>(out.size());
-    out.push_back(record_of(store_, i));
+    auto& leavers = out[static_cast<std::size_t>(goes_[at] - 1)].particles;
+    number[at] = static_cast<std::int32_t>(leavers.size());
+    leavers.push_back(record_of(store_, i));
   }
 
   loose_.clear();
-  std::vector<std::vector<LooseContact>> contacts(2);
-  collect_loose(contacts, goes_, number);
-  std::array<std::vector<WallRecord<Dim>>, 2> walls;
+  collect_loose(out, goes_, number);
   old_walls_.clear();
   for (const WallContact<Dim>& c : walls_.list()) {
     const auto at = static_cast<std::size_t>(c.row);
@@ -128,9 +105,8 @@ void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byt
     }
     WallRecord<Dim> w{number[at], c.wall, {}};
     std::copy_n(c.spring, int{L::kSprings}, w.spring);
-    walls[static_cast<std::size_t>(goes_[at] - 1)].push_back(w);
+    out[static_cast<std::size_t>(goes_[at] - 1)].walls.push_back(w);
   }
-  std::array<std::vector<BondRecord<Dim>>, 2> bonds;
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.bonds().size()); ++b) {
     if (bonds_.is_broken(b)) continue;
     if (counts_bond(b)) --imbalance_.bonds;
@@ -138,30 +114,19 @@ void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byt
     const auto [left, right] = bond_leaves(b);
     const BondRecord<Dim> record{bonds_.bonds()[static_cast<std::size_t>(b)],
                                  static_cast<std::uint8_t>(computes_bond(b))};
-    if (left) bonds[0].push_back(record);
-    if (right) bonds[1].push_back(record);
+    if (left) out[0].bonds.push_back(record);
+    if (right) out[1].bonds.push_back(record);
   }
   bonds_.drop_broken();
-  for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
-    auto& message = side == 0 ? to_left : to_right;
-    message.clear();
-    ByteWriter out(message);
-    out.put_counted(leavers[side]);
-    out.put_counted(contacts[side]);
-    out.put_counted(walls[side]);
-    out.put_counted(bonds[side]);
-  }
+  encode(out[0], to_left);
+  encode(out[1], to_right);
 }
 
 template <int Dim>
 void Lane<Dim>::absorb(std::span<const std::byte> message) {
   if (message.empty()) return;
-  ByteReader in(message);
-  const auto particles = in.take_counted<ParticleRecord<Dim>>();
-  auto contacts = in.take_counted<LooseContact>();
-  const auto walls = in.take_counted<WallRecord<Dim>>();
-  const auto bonds = in.take_counted<BondRecord<Dim>>();
-  in.finish();
+  auto [particles, contacts, walls, bonds] =
+      decode_migration(message, *world_, slab_begin_, slab_end_);
 
   // Arrivals follow the source rows of begin_rebuild; ghosts and waste rows are no longer needed.
   const auto first = static_cast<std::int32_t>(goes_.size());
@@ -177,17 +142,12 @@ void Lane<Dim>::absorb(std::span<const std::byte> message) {
   for (std::size_t p = 0; p < particles.size(); ++p) {
     const auto row = first + static_cast<std::int32_t>(p);
     write_row(store_, row, particles[p]);
-    const int slab = static_cast<int>(particles[p].key / world_->grid.slab_size());
-    if (slab < slab_begin_ || slab >= slab_end_) {
-      throw RunError("particle " + std::to_string(particles[p].id) +
-                     " jumped over a whole strip: the time step is too long");
-    }
     if (particles[p].has_external == 0) continue;
     store_.external.resize(goes_.size() * L::kForce, 0.0);
     std::copy_n(particles[p].external, int{L::kForce},
                 store_.external.data() + static_cast<std::size_t>(row) * L::kForce);
   }
-  for (LooseContact& c : contacts) {
+  for (LooseContact<Dim>& c : contacts) {
     c.handle += first;
     loose_.push_back(c);
   }
@@ -262,24 +222,22 @@ void Lane<Dim>::pack_ghosts(Side side, std::vector<std::byte>& message) const {
 
 template <int Dim>
 void Lane<Dim>::take_ghosts(std::span<const std::byte> left, std::span<const std::byte> right) {
+  const int num_slabs = world_->grid.num_slabs();
+  const std::array<int, 2> slabs{(slab_begin_ - 1 + num_slabs) % num_slabs, slab_end_ % num_slabs};
   std::array<std::vector<ParticleRecord<Dim>>, 2> ghosts;
   for (const Side side : {Left, Right}) {
     if (!bands_[side].exists) continue;
-    ByteReader in(side == Left ? left : right);
-    ghosts[side] = in.take_counted<ParticleRecord<Dim>>();
-    in.finish();
+    ghosts[side] = decode_ghosts(side == Left ? left : right, *world_, slabs[side]);
     store_.num_ghosts[side] = static_cast<std::int32_t>(ghosts[side].size());
   }
   store_.resize_for_ghosts();
-  const int num_slabs = world_->grid.num_slabs();
   for (const Side side : {Left, Right}) {
     if (!bands_[side].exists) continue;
     std::int32_t row = store_.ghost_begin(side);
     const std::int32_t begin = row;
     for (const auto& record : ghosts[side]) write_row(store_, row++, record);
-    const int slab =
-        side == Left ? (slab_begin_ - 1 + num_slabs) % num_slabs : slab_end_ % num_slabs;
-    bands_[side].ghost_cells.index(world_->grid, store_, {begin, row}, slab, slab + 1);
+    bands_[side].ghost_cells.index(world_->grid, store_, {begin, row}, slabs[side],
+                                   slabs[side] + 1);
     const Stopwatch watch(search_seconds_.rebuild);
     list_across(side);
   }

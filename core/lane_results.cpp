@@ -56,17 +56,20 @@ void Lane<Dim>::finish_right_band(std::span<const double> results) {
   const Band& band = bands_[Right];
   const auto num_bonds =
       static_cast<std::size_t>(bonds_.size(BondSet<Dim>::Right)) * BondSet<Dim>::kExported;
-  const std::size_t expected =
-      results.empty() ? 0 : 1 + static_cast<std::size_t>(results[0]) * L::kForce + num_bonds;
-  if (results.empty() || results.size() != expected) {
+  const std::size_t num_contacts =
+      results.size() > num_bonds ? (results.size() - 1 - num_bonds) / L::kForce : 0;
+  if (results.size() != 1 + num_contacts * L::kForce + num_bonds ||
+      results[0] != static_cast<double>(num_contacts)) {
     throw RunError("a results message has " + std::to_string(results.size()) +
-                   " numbers instead of " + std::to_string(expected));
+                   " numbers, which do not fit its contacts and " +
+                   std::to_string(bonds_.size(BondSet<Dim>::Right)) + " bonds");
   }
   const double* f = results.data() + 1;
-  for (auto n = static_cast<std::int64_t>(results[0]); n > 0; --n, f += L::kForce) {
-    const std::int32_t own = band.rows.begin + static_cast<std::int32_t>(f[kNumberSlot]);
-    if (own >= band.rows.end)
+  const double num_rows = band.rows.end - band.rows.begin;
+  for (std::size_t n = num_contacts; n > 0; --n, f += L::kForce) {
+    if (!(f[kNumberSlot] >= 0.0 && f[kNumberSlot] < num_rows))
       throw RunError("a results message names a particle that is not in the band");
+    const std::int32_t own = band.rows.begin + static_cast<std::int32_t>(f[kNumberSlot]);
     double* row = store_.f(own);
     // The force is on the lower particle of the pair, and so is this one unless the ghosts come
     // first.

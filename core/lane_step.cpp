@@ -8,6 +8,9 @@
 namespace barchan {
 namespace {
 
+/// Steps whose work on walls a sum can hold: a million contacts each.
+constexpr std::int64_t kCarryEvery = 512;
+
 /// Time over which springs stretch: in the first step, known by its half kick, nothing has moved
 /// yet.
 double spring_step(const StepFrame& frame, double dt) {
@@ -49,8 +52,10 @@ void Lane<Dim>::begin_step(const StepFrame& frame) {
   if (world_->search == ContactSearchKind::AllPairs) research_owned();
   rows_done_ = bands_[Left].exists ? bands_[Left].rows.end : 0;
   wall_sums_.resize(world_->walls.size());
+  const bool is_carry_due = ++steps_since_start_ % kCarryEvery == 0;
   for (WallSums& sums : wall_sums_) {
     for (ExactSum& force : sums.force) force = {};
+    if (is_carry_due) sums.work.carry();
   }
   if (!bonds_.empty()) compute_bonds(BondSet<Dim>::Owned);
 }

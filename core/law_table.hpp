@@ -25,6 +25,7 @@ class LawTable {
     return codes_[static_cast<std::size_t>(type_a * num_materials_ + type_b)];
   }
   [[nodiscard]] int size() const { return static_cast<int>(rows_.size()) / LawView::kRow; }
+  [[nodiscard]] int num_materials() const { return num_materials_; }
   [[nodiscard]] Damping damping() const { return damping_; }  ///< what some dashpot depends on
   /// Valid as long as the table is.
   [[nodiscard]] LawView view() const { return {rows_.data(), columns_.data(), size()}; }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <stdexcept>
+#include <string>
 #include <thread>
 
 #include <tbb/parallel_for.h>
@@ -82,6 +84,7 @@ void StepGraph<Dim>::run(const StepFrame& frame) {
 
 template <int Dim>
 void StepGraph<Dim>::end_step() {
+  require_all_bands();
   strip_.end_step(true);
   ++num_steps_;
   sent_at_ = next_sent_at_;
@@ -93,6 +96,19 @@ void StepGraph<Dim>::end_step() {
   trace_->count(Trace::Counter::FlightMicroseconds, flight_ns_ - flight_before_, now);
   exposed_before_ = exposed;
   flight_before_ = flight_ns_;
+}
+
+/// A band that nobody did would be a wrong step without a word.
+template <int Dim>
+void StepGraph<Dim>::require_all_bands() {
+  int num_bands = 0;
+  for (int l = 0; l < strip_.num_lanes(); ++l) {
+    for (const Side side : kSides) num_bands += has_band(l, side) ? 1 : 0;
+  }
+  const int done = bands_done_.exchange(0);
+  if (done == num_bands) return;
+  throw std::logic_error("step graph: " + std::to_string(done) + " of " +
+                         std::to_string(num_bands) + " bands were done");
 }
 
 template <int Dim>
@@ -143,13 +159,14 @@ void StepGraph<Dim>::run_chunk(int l, int chunk) {
     return;
   }
   nodes.idle_since = now_ns();
+  // Counted before its band may start: on another worker the band looks whether it is the last.
+  const bool band_drains = strip_.num_lanes() == 1 && has_band(l, Side::Left) && arrived_[0];
+  const bool is_last = lanes_left_.fetch_sub(1) == 1;
   if (has_band(l, Side::Left))
     nodes.left->try_put(Signal());
   else if (has_band(l, Side::Right))
     nodes.right->try_put(Signal());
-  const bool band_drains = strip_.num_lanes() == 1 && has_band(l, Side::Left) && arrived_[0];
-  if (lanes_left_.fetch_sub(1) == 1 && !band_drains && !(arrived_[0] && arrived_[1]))
-    drain_->try_put(0);
+  if (is_last && !band_drains && !(arrived_[0] && arrived_[1])) drain_->try_put(0);
 }
 
 template <int Dim>
@@ -166,6 +183,7 @@ void StepGraph<Dim>::run_band(int l, Side side) {
     if (is_outer && side == Side::Left) left_is_done_ = true;
   }
   const std::int64_t end = now_ns();
+  ++bands_done_;
   nodes.band_ns += end - begin;
   busy_ns_ += end - begin;
   if (trace_ != nullptr)

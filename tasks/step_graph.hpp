@@ -94,6 +94,7 @@ class StepGraph {
   void poll_until_in(bool may_leave);
   void await_all();
   void end_step();
+  void require_all_bands();
   void maybe_delay();
   [[nodiscard]] bool has_band(int lane, Side side) const;
 
@@ -106,7 +107,7 @@ class StepGraph {
   StepFrame frame_;
   std::mutex comm_mutex_;  ///< one thread at a time in the exchange
   std::array<std::atomic<bool>, 2> arrived_{};
-  std::atomic<int> lanes_left_{0};
+  std::atomic<int> lanes_left_{0}, bands_done_{0};
   std::atomic<bool> left_is_done_{false};
   std::deque<LaneNodes> nodes_;
   std::int64_t num_steps_ = 0;

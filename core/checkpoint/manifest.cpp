@@ -49,10 +49,18 @@ std::string verified_part(const std::string& text, const std::string& file) {
   return std::string(body) + "}";
 }
 
+/// A whole number from zero to `most`. The library would convert a float of any size.
+std::int64_t count(const ordered_json& value, const char* what,
+                   std::int64_t most = std::int64_t{1} << 48) {  // sums over all files hold
+  if (!value.is_number_integer()) throw std::invalid_argument(std::string(what) + " is no number");
+  const auto number = value.get<std::int64_t>();
+  if (number < 0 || number > most)
+    throw std::invalid_argument(std::string(what) + " is out of range");
+  return number;
+}
+
 std::int64_t count_at(const ordered_json& node, const char* key) {
-  const auto value = node.at(key).get<std::int64_t>();
-  if (value < 0) throw std::invalid_argument(std::string(key) + " is negative");
-  return value;
+  return count(node.at(key), key);
 }
 
 ManifestFile read_file(const ordered_json& node, std::size_t rank) {
@@ -61,8 +69,8 @@ ManifestFile read_file(const ordered_json& node, std::size_t rank) {
   ManifestFile f;
   f.seal = {static_cast<std::uint64_t>(count_at(node, "bytes")),
             parse_hex(node.at("hash").get<std::string>())};
-  f.slab_begin = node.at("slabs").at(0).get<std::int64_t>();
-  f.slab_end = node.at("slabs").at(1).get<std::int64_t>();
+  f.slab_begin = count(node.at("slabs").at(0), "slabs", INT32_MAX);
+  f.slab_end = count(node.at("slabs").at(1), "slabs", INT32_MAX);
   f.particles = count_at(node, "particles");
   f.contacts = count_at(node, "contacts");
   f.wall_contacts = count_at(node, "wall_contacts");
@@ -73,7 +81,7 @@ ManifestFile read_file(const ordered_json& node, std::size_t rank) {
 Manifest read_manifest(const ordered_json& node) {
   if (node.at("format").get<std::string>() != kFormat)
     throw std::invalid_argument("not a checkpoint's manifest");
-  const int version = node.at("version").get<int>();
+  const std::int64_t version = count_at(node, "version");
   if (version != kVersion) {
     throw std::invalid_argument(
         fmt::format("format version {}, and this program reads version {}", version, kVersion));
@@ -81,7 +89,7 @@ Manifest read_manifest(const ordered_json& node) {
   Manifest m;
   m.step = count_at(node, "step");
   m.time = node.at("time").get<double>();
-  m.dimension = node.at("dimension").get<int>();
+  m.dimension = static_cast<int>(count(node.at("dimension"), "dimension", 3));
   m.title = node.at("title").get<std::string>();
   for (const auto& file : node.at("files")) m.files.push_back(read_file(file, m.files.size()));
   if (m.files.empty() || (m.dimension != 2 && m.dimension != 3))

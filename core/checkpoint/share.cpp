@@ -47,6 +47,13 @@ class Check {
     });
     require(all, "the column " + name_of(column) + " names something that the deck does not have");
   }
+  /// Carried digits and counts, small enough to add up over any number of files.
+  void totals(const std::vector<std::int64_t>& values) const {
+    constexpr std::int64_t kMost = std::int64_t{1} << 50;
+    const bool all =
+        std::all_of(values.begin(), values.end(), [](auto v) { return v >= -kMost && v <= kMost; });
+    require(all, "the column totals has values that are out of range");
+  }
 
  private:
   const std::string& file_;
@@ -152,6 +159,7 @@ void check_share(const CheckpointShare& share, const ShareLimits& limits, const 
   check_links(share, w, limits, check);
   check.size(CheckpointColumn::Totals, share.totals.size(),
              1 + limits.num_walls * ExactSum::kDigits);
+  check.totals(share.totals);
 }
 
 }  // namespace barchan

@@ -51,6 +51,8 @@ struct ParticleFile {
 /// Reads a snapshot piece `.vtp`, or all pieces of a `.pvtp`, with arrays id, type, radius,
 /// density, velocity and angular_velocity. Lines are zero. @throws InputError
 [[nodiscard]] ParticleFile read_particles_vtp(const std::string& path);
+/// The same from the text of one piece.
+[[nodiscard]] ParticleFile parse_particles_vtp(std::string_view text, const std::string& file);
 
 /// Gives disks the areal density that keeps their mass: density·4/3·r. Does nothing to areal
 /// densities.

@@ -26,8 +26,7 @@ Vec3 row_of(const std::vector<double>& values, std::size_t i) {
   return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
 }
 
-void append_piece(ParticleFile& result, const std::string& file) {
-  const VtpPiece piece = read_vtp(file);
+void append_piece(ParticleFile& result, const VtpPiece& piece, const std::string& file) {
   const auto& id = values_of<std::int64_t>(piece, "id", 1, file);
   const auto& type = values_of<std::int32_t>(piece, "type", 1, file);
   const auto& radius = values_of<double>(piece, "radius", 1, file);
@@ -56,10 +55,18 @@ ParticleFile read_particles_vtp(const std::string& path) {
   ParticleFile result;
   result.file = path;
   if (path.ends_with(".pvtp")) {
-    for (const std::string& piece : read_pvtp(path)) append_piece(result, piece);
+    for (const std::string& piece : read_pvtp(path)) append_piece(result, read_vtp(piece), piece);
   } else {
-    append_piece(result, path);
+    append_piece(result, read_vtp(path), path);
   }
+  check_particle_file(result);
+  return result;
+}
+
+ParticleFile parse_particles_vtp(std::string_view text, const std::string& file) {
+  ParticleFile result;
+  result.file = file;
+  append_piece(result, parse_vtp(text, file), file);
   check_particle_file(result);
   return result;
 }

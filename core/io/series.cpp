@@ -23,7 +23,8 @@ std::string header_of(std::span<const std::string> further_columns) {
   return header;
 }
 
-/// The part of a table up to and including `step`; a last row without line feed is not trusted.
+}  // namespace
+
 std::string kept_rows(std::string_view text, const std::string& path, const std::string& header,
                       std::int64_t step) {
   LineReader lines(text.substr(0, text.find_last_of('\n') + 1), path);
@@ -44,8 +45,6 @@ std::string kept_rows(std::string_view text, const std::string& path, const std:
   }
   return kept;
 }
-
-}  // namespace
 
 SeriesWriter::SeriesWriter(std::string path, std::size_t num_further, const char* mode)
     : path_(std::move(path)), num_further_(num_further), file_(std::fopen(path_.c_str(), mode)) {

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace barchan {
@@ -16,6 +17,11 @@ struct SeriesRow {
   std::int64_t contacts = 0;
   double max_overlap = 0.0;  ///< [m]
 };
+
+/// The rows of a series up to and including `step`, with the header, which must be `header`. A last
+/// row without line feed is not trusted. @throws InputError with line: other columns, a damaged row
+[[nodiscard]] std::string kept_rows(std::string_view text, const std::string& path,
+                                    const std::string& header, std::int64_t step);
 
 /// The table of a run over time: `step,time,kinetic_energy,contacts,max_overlap`, then columns of
 /// the caller. Each row is on its way to the disk before append() returns. One writer per file

@@ -71,8 +71,10 @@ void write_pvd(const std::string& path, std::span<const PvdEntry> entries);
 
 /// Paths of the pieces of a .pvtp, joined to its folder. @throws InputError
 [[nodiscard]] std::vector<std::string> read_pvtp(const std::string& path);
+[[nodiscard]] std::vector<std::string> parse_pvtp(std::string_view text, const std::string& path);
 
 /// Entries of a .pvd, so that a restarted run can go on with it. @throws InputError
 [[nodiscard]] std::vector<PvdEntry> read_pvd(const std::string& path);
+[[nodiscard]] std::vector<PvdEntry> parse_pvd(std::string_view text, const std::string& file);
 
 }  // namespace barchan

@@ -153,9 +153,8 @@ class PieceReader {
 
 /// Calls `use` with every tag named `name`.
 template <class Use>
-void for_each_tag(const std::string& path, std::string_view name, Use use) {
-  const std::string text = read_text_file(path);
-  XmlReader xml(text, path);
+void for_each_tag(std::string_view text, const std::string& file, std::string_view name, Use use) {
+  XmlReader xml(text, file);
   for (XmlToken token = xml.next(); token.kind != XmlToken::Kind::End; token = xml.next()) {
     const bool is_tag = token.kind == XmlToken::Kind::Open || token.kind == XmlToken::Kind::Empty;
     if (is_tag && token.name == name) use(token, xml);
@@ -179,9 +178,13 @@ VtpPiece read_vtp(const std::string& path) {
 }
 
 std::vector<std::string> read_pvtp(const std::string& path) {
+  return parse_pvtp(read_text_file(path), path);
+}
+
+std::vector<std::string> parse_pvtp(std::string_view text, const std::string& path) {
   std::vector<std::string> pieces;
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  for_each_tag(path, "Piece", [&](const XmlToken& tag, const XmlReader& xml) {
+  for_each_tag(text, path, "Piece", [&](const XmlToken& tag, const XmlReader& xml) {
     if (tag.attribute("Source").empty()) xml.fail("a piece without Source", kOurs);
     pieces.push_back((folder / unescape_xml(tag.attribute("Source"))).string());
   });
@@ -190,8 +193,12 @@ std::vector<std::string> read_pvtp(const std::string& path) {
 }
 
 std::vector<PvdEntry> read_pvd(const std::string& path) {
+  return parse_pvd(read_text_file(path), path);
+}
+
+std::vector<PvdEntry> parse_pvd(std::string_view text, const std::string& file) {
   std::vector<PvdEntry> entries;
-  for_each_tag(path, "DataSet", [&](const XmlToken& tag, const XmlReader& xml) {
+  for_each_tag(text, file, "DataSet", [&](const XmlToken& tag, const XmlReader& xml) {
     entries.push_back({number_from<double>(tag.attribute("timestep"), "timestep", xml),
                        unescape_xml(tag.attribute("file"))});
   });

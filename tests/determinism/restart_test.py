@@ -1,10 +1,10 @@
 """A run that ends early and goes on gives the files of one that was never interrupted.
 
-usage: restart_test.py BARCHAN [--kills N] [--seed S]
+usage: restart_test.py BARCHAN [--kills N [--steps S]] [--seed S]
 
 Ends runs by their number of steps, by a signal, and by kill -9 of one rank at a random moment; goes on with --restart
 auto, on other numbers of ranks and threads; then compares state digest, series.csv and snapshots with the undisturbed
-run. A failure names the seed, which repeats the moments in steps' terms only roughly: time is not repeatable.
+run. A seed repeats the moments by rows of series.csv, so nearly.
 """
 
 import argparse
@@ -110,46 +110,86 @@ def save_on_signals(command, expected):
     compare("signalled", expected, "signalled")
 
 
-def kill_and_go_on(command, expected, rng, number, seconds):
-    folder = "killed"
+def rows_of(folder):
+    """Rows of series.csv so far: where the run is."""
+    try:
+        return pathlib.Path(folder, "series.csv").read_bytes().count(b"\n") - 1
+    except OSError:
+        return -1
+
+
+def has_ended_before(process, is_time):
+    """Waits for a moment; whether the process was faster."""
+    while not is_time():
+        if process.poll() is not None:
+            return True
+        time.sleep(0.001)
+    return False
+
+
+def random_moment(folder, rng, last_row):
+    """Most kills strike somewhere between two rows, the others while ranks start, read or restore."""
+    begin = time.monotonic()
+    if rng.random() < 0.2:
+        patience = rng.uniform(0.0, 1.5)
+        return lambda: time.monotonic() - begin > patience
+    row, at, delay = rng.uniform(max(rows_of(folder), 0), last_row), begin + 0.3, rng.uniform(0.0, 0.05)
+
+    def is_time():  # rows of the run before are cut off while ranks start
+        return time.monotonic() > at and rows_of(folder) >= row and not time.sleep(delay)
+    return is_time
+
+
+def kill_and_go_on(command, expected, rng, number, steps):
+    """Up to three kills in one run. @return how many struck a run under way"""
+    folder, kills, last_row = "killed", [], steps // 100
     shutil.rmtree(folder, ignore_errors=True)
-    for attempt in range(20):
+    while True:
         ranks, threads = rng.choice((2, 3, 4)), rng.choice((1, 2))
-        patience = rng.uniform(0.1, 1.0) * seconds if attempt < 3 else 300
-        process = subprocess.Popen(line_of(command, folder, ranks, threads, "--restart", "auto"), stdout=subprocess.PIPE,
-                                   stderr=subprocess.PIPE, text=True)
-        try:
-            _, err = process.communicate(timeout=patience)
-            expect(process.returncode == 0, f"kill {number}: a restart failed: {err}")
-            break
-        except subprocess.TimeoutExpired:
+        process = subprocess.Popen(line_of(command, folder, ranks, threads, "--restart", "auto", steps=steps),
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        moment = random_moment(folder, rng, last_row)
+        if len(kills) < 3 and not has_ended_before(process, moment):
             victims = children_of(process.pid)
             if victims:
                 os.kill(rng.choice(victims), signal.SIGKILL)
-            process.communicate(timeout=100)
-    compare(folder, expected, f"kill {number}")
+                kills.append(100 * max(rows_of(folder) - 1, 0))
+        _, err = process.communicate(timeout=500)
+        if process.returncode == 0:
+            break
+        if not ("signal 9" in err or "Killed" in err):
+            expect(False, f"run {number}: a restart failed: {err}")
+            break
+    compare(folder, expected, f"run {number}, killed near steps {kills}")
+    print(f"run {number}: killed near steps {kills}, ended on {ranks} ranks, {threads} threads", flush=True)
+    return len(kills)
 
 
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("command", nargs="?", default=os.environ.get("BARCHAN_COMMAND"))
     parser.add_argument("--kills", type=int, default=2)
+    parser.add_argument("--steps", type=int, default=STEPS, help="of the runs that are killed")
     parser.add_argument("--seed", type=int, default=random.randrange(10**6))
     arguments = parser.parse_args()
     rng = random.Random(arguments.seed)
     print("seed", arguments.seed)
     shutil.rmtree("whole", ignore_errors=True)
-    begin = time.time()
     whole = run(arguments.command, "whole", 1, 1)
-    seconds = time.time() - begin
     expect(whole.returncode == 0, whole.stderr)
     expected = finished("whole")
     stop_and_go_on(arguments.command, expected)
     skip_damaged(arguments.command, expected)
     save_on_signals(arguments.command, expected)
-    for number in range(arguments.kills):
-        kill_and_go_on(arguments.command, expected, rng, number + 1, seconds)
-    print("all passed" if not failures else f"{len(failures)} failed")
+    if arguments.steps != STEPS:
+        whole = run(arguments.command, "whole", 1, 1, "--force", steps=arguments.steps)
+        expect(whole.returncode == 0, whole.stderr)
+        expected = finished("whole")
+    runs, kills = 0, 0
+    while kills < arguments.kills:
+        runs += 1
+        kills += kill_and_go_on(arguments.command, expected, rng, runs, arguments.steps)
+    print(f"{kills} kills in {runs} runs:", "all passed" if not failures else f"{len(failures)} failed")
     sys.exit(1 if failures else 0)
 
 

@@ -1,4 +1,5 @@
 #include <sys/resource.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -228,6 +229,29 @@ TEST(Checkpoint, SurvivesAnyBytes) {
                              "file"),
         InputError);
     EXPECT_THROW((void)decode_state(bytes, "file"), InputError);
+  }
+}
+
+TEST(Checkpoint, RefusesAManifestWithNumbersThatAreNoCounts) {
+  const Manifest manifest{5, 0.1, 2, "a run", {{{64, 1}, 0, 3, 20, 5, 2, 1}}};
+  const std::string text = manifest_text(manifest);
+  EXPECT_NO_THROW((void)parse_manifest(text, "file"));
+  for (const auto& [from, to] :
+       {std::pair("\"particles\": 20,\n   \"contacts\"", "\"particles\": 6e36,\n   \"contacts\""),
+        {"\"step\": 5", "\"step\": -5"},
+        {"\"step\": 5", "\"step\": 1e300"},
+        {"\"step\": 5", "\"step\": 9223372036854775807"},
+        {"\"version\":", "\"version\": 1e10, \"was\":"},
+        {"\"dimension\": 2", "\"dimension\": 4"}}) {
+    std::string body = text.substr(0, text.rfind(",\n\"xxh3\""));
+    ASSERT_NE(body.find(from), std::string::npos) << from;
+    body.replace(body.find(from), std::string(from).size(), to);
+    char hash[17];
+    std::snprintf(hash, sizeof hash, "%016llx",
+                  static_cast<unsigned long long>(XXH3_64bits(body.data(), body.size())));
+    EXPECT_THROW((void)parse_manifest(body + ",\n\"xxh3\": \"" + hash + "\"}\n", "file"),
+                 InputError)
+        << to;
   }
 }
 

@@ -37,6 +37,27 @@ TEST(ExactSum, DoesNotDependOnTheOrderOrOnPartialSums) {
   }
 }
 
+TEST(ExactSum, IsTheSameAfterACarryAndHoldsEndlesslyManyTerms) {
+  ExactSum sum, term;
+  term.add(-0.1);
+  for (std::int64_t& digit : sum.digits()) digit = -(std::int64_t{1} << 62);
+  sum.digits().back() = 0;
+  const double before = sum.value();
+
+  sum.carry();
+
+  EXPECT_EQ(sum.value(), before);
+  for (std::size_t d = 0; d + 2 < ExactSum::kDigits; ++d) {
+    EXPECT_GE(sum.digits()[d], 0);
+    EXPECT_LT(sum.digits()[d], std::int64_t{1} << 32);
+  }
+  for (int n = 0; n < 100; ++n) {
+    term.add(term);  // twice as many each time
+    term.carry();
+  }
+  EXPECT_EQ(term.value(), std::ldexp(-0.1, 100));
+}
+
 TEST(ExactSum, LosesNothingToCancellation) {
   EXPECT_EQ(sum_of({1e80, 1.0, -1e80}), 1.0);
   EXPECT_EQ(sum_of({1.0, 0x1p-230, -1.0}), 0x1p-230);

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <barchan/core/bonds.hpp>
+#include <barchan/core/layout.hpp>
+
+// What lanes send each other at a rebuild, as bytes and back. Bytes that came in are held against
+// the receiver's world before anyone works on them: any bytes are safe, whoever sent them.
+
+namespace barchan {
+
+template <int Dim>
+struct World;
+
+/// A particle on its way: an arrival, or a ghost.
+template <int Dim>
+struct ParticleRecord {
+  std::int64_t id, key;
+  double motion[8];
+  double spin[Dim == 3 ? 4 : 1];
+  double external[Layout<Dim>::kForce];
+  std::uint8_t type, flags, has_external;
+};
+
+/// A contact's spring on its way from old lists to new ones; oriented from the handle to the
+/// partner.
+template <int Dim>
+struct LooseContact {
+  std::int32_t handle = 0;  ///< row: before order() a source row, in messages the migrant's number
+  std::int64_t partner = 0;
+  double spring[Layout<Dim>::kSprings] = {};
+};
+
+template <int Dim>
+struct WallRecord {
+  std::int32_t number, wall;
+  double spring[Layout<Dim>::kSprings];
+};
+
+template <int Dim>
+struct BondRecord {
+  Bond<Dim> bond;
+  std::uint8_t is_current;  ///< the sender computes this bond; its state replaces the receiver's
+};
+
+/// Who leaves a lane across one cut, with history and bonds. Contacts and walls name a migrant by
+/// its place in `particles`.
+template <int Dim>
+struct Migration {
+  std::vector<ParticleRecord<Dim>> particles;
+  std::vector<LooseContact<Dim>> contacts;
+  std::vector<WallRecord<Dim>> walls;
+  std::vector<BondRecord<Dim>> bonds;
+};
+
+/// Replaces `message`.
+template <int Dim>
+void encode(const Migration<Dim>& migration, std::vector<std::byte>& message);
+
+/// Arrivals in slabs [slab_begin, slab_end). Errors: RunError: damaged, or a particle that belongs
+/// to none of these slabs
+template <int Dim>
+[[nodiscard]] Migration<Dim> decode_migration(std::span<const std::byte> message,
+                                              const World<Dim>& world, int slab_begin,
+                                              int slab_end);
+
+/// Ghosts of one slab, in canonical order. Errors: RunError.
+template <int Dim>
+[[nodiscard]] std::vector<ParticleRecord<Dim>> decode_ghosts(std::span<const std::byte> message,
+                                                             const World<Dim>& world, int slab);
+
+}  // namespace barchan

@@ -1,0 +1,241 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <barchan/core/checkpoint/share.hpp>
+#include <barchan/core/lane.hpp>
+#include <barchan/core/model.hpp>
+
+#include "unit/core/lane_fixture.hpp"
+
+namespace barchan::fuzz {
+
+using Bytes = std::vector<std::byte>;
+
+/// Two small lanes beside each other with contacts, bonds and walls, which exchange messages; one
+/// message is for the caller to change.
+template <int Dim>
+class Sample {
+ public:
+  using Side = typename Lane<Dim>::Side;
+
+  /// @param returns  the published exchange: the lane on the right computes the pairs of the cut
+  explicit Sample(bool returns = false) : world_(make_world()) {
+    for (auto& lane : lanes_) lane = std::make_unique<Lane<Dim>>(world_);
+    lanes_[0]->band(Lane<Dim>::Right).exists = true;
+    lanes_[0]->band(Lane<Dim>::Right).returns = returns;
+    lanes_[1]->band(Lane<Dim>::Left).exists = true;
+    lanes_[1]->band(Lane<Dim>::Left).ghosts_first = true;
+    lanes_[1]->band(Lane<Dim>::Left).returns = returns;
+  }
+
+  [[nodiscard]] const World<Dim>& world() const { return world_; }
+
+  /// The model that a state of this world is held against.
+  [[nodiscard]] Model model() const {
+    Model model;
+    model.dimension = Dim;
+    model.domain = domain();
+    model.walls = world_.wall_specs;
+    model.bond_laws = world_.bond_laws;
+    model.stages.resize(2);
+    return model;
+  }
+
+  /// A rebuild that moves the cut, and two steps; `change` gets what comes to the lane on the
+  /// right (`to_right`) or on the left.
+  template <class Change>
+  void arrivals(bool to_right, Change&& change) {
+    seed();
+    std::array<std::array<Bytes, 2>, 2> out;
+    const int middle = cut(1) + (to_right ? -1 : 1);  // a slab changes its lane
+    lanes_[0]->begin_rebuild(0, middle, out[0][0], out[0][1]);
+    lanes_[1]->begin_rebuild(middle, cut(2), out[1][0], out[1][1]);
+    change(to_right ? out[0][1] : out[1][0]);
+    lanes_[0]->absorb(out[1][0]);
+    lanes_[1]->absorb(out[0][1]);
+    for (auto& lane : lanes_) lane->order();
+    exchange_ghosts(true, [](Bytes&) {});
+    step();
+    step();
+    save();
+  }
+
+  template <class Change>
+  void ghosts(bool to_right, Change&& change) {
+    seed_only();
+    exchange_ghosts(to_right, change);
+    step();
+    step();
+    save();
+  }
+
+  template <class Change>
+  void halo(bool to_right, Change&& change) {
+    seed();
+    step(to_right, change);
+    step();
+    save();
+  }
+
+  template <class Change>
+  void results(Change&& change) {
+    seed();
+    begin_step();
+    lanes_[1]->finish_band(Lane<Dim>::Left);
+    const std::vector<double> sent = returned_forces();
+    const auto raw = std::as_bytes(std::span(sent));
+    Bytes message(raw.begin(), raw.end());
+    change(message);
+    std::vector<double> received(message.size() / sizeof(double));
+    if (!received.empty())
+      std::memcpy(received.data(), message.data(), received.size() * sizeof(double));
+    lanes_[0]->finish_right_band(received);
+    save();
+  }
+
+  /// One lane goes on from a share that was checked.
+  void restore(const CheckpointShare& share) {
+    Lane<Dim> lane(world_);
+    lane.restore(0, world_.grid.num_slabs(), share);
+    lane.order();
+    lane.list_owned();
+    lane.take_ghosts({}, {});
+    lane.restore_history();
+    lane.cut_chunks(64);
+    lane.put_back(share);
+    for (int n = 0; n < 2; ++n) {
+      lane.begin_step({world_.dt, {}, 0.0});
+      for (int c = 0; c < lane.num_chunks(); ++c) lane.run_chunk(c);
+    }
+    CheckpointShare again;
+    lane.save(again);
+    (void)lane.measure(Vec3::Zero());
+  }
+
+ private:
+  [[nodiscard]] std::vector<double> returned_forces() {
+    std::vector<double> forces;
+    lanes_[1]->results(forces);
+    return forces;
+  }
+
+  static Domain domain() {
+    Domain domain;
+    domain.hi = Vec3(7.0, Dim == 3 ? 1.5 : 2.4, Dim == 3 ? 1.5 : 0.0);
+    return domain;
+  }
+
+  static World<Dim> make_world() {
+    World<Dim> w = test::world_of<Dim>(domain(), 1.1, 0.1, 40, true);
+    BondLaw law;
+    law.young_modulus = 1e5;
+    law.tensile_strength = 1e4;
+    w.bond_laws = {law};
+    WallSpec floor, plate;
+    floor.normal = plate.normal = Vec3(0.0, 1.0, 0.0);
+    plate.kind = WallKind::Plate;
+    plate.point = Vec3(3.0, 2.0, 1.0);
+    plate.width = plate.depth = 1.0;
+    plate.velocity = Vec3(0.0, -0.1, 0.0);
+    w.wall_specs = {floor, plate};
+    w.walls.resize(2);
+    w.walls[1].point = plate.point;
+    w.walls[1].velocity = plate.velocity;
+    return w;
+  }
+
+  [[nodiscard]] int cut(std::size_t l) const {
+    return l == 0 ? 0 : (l == 1 ? world_.grid.num_slabs() / 2 : world_.grid.num_slabs());
+  }
+
+  void seed_only() {
+    const auto all = test::random_particles(Dim, domain(), Dim == 2 ? 32 : 40, 0.5, 5);
+    std::vector<BondData> bonds;
+    std::vector<double> lengths;
+    for (std::size_t p = 0; p < all.size(); ++p) {
+      for (std::size_t q = p + 1; q < all.size() && bonds.size() < 12; ++q) {
+        const double length = (all[p].position - all[q].position).norm();
+        if (length > 0.7) continue;
+        bonds.push_back({std::min(all[p].id, all[q].id), std::max(all[p].id, all[q].id), 0});
+        lengths.push_back(length);
+      }
+    }
+    for (const std::size_t l : {std::size_t{0}, std::size_t{1}}) {
+      std::vector<ParticleData> mine;
+      for (const auto& p : all) {
+        const int slab = world_.grid.coordinate(p.position.data(), 0);
+        if (slab >= cut(l) && slab < cut(l + 1)) mine.push_back(p);
+      }
+      const std::vector<char> bonded(mine.size(), 1);
+      lanes_[l]->seed(cut(l), cut(l + 1), mine, bonds, lengths, bonded);
+      lanes_[l]->order();
+    }
+  }
+
+  void seed() {
+    seed_only();
+    exchange_ghosts(true, [](Bytes&) {});
+    step();
+  }
+
+  template <class Change>
+  void exchange_ghosts(bool to_right, Change&& change) {
+    Bytes left, right;  // to the lane on that side
+    lanes_[0]->pack_ghosts(Lane<Dim>::Right, right);
+    lanes_[1]->pack_ghosts(Lane<Dim>::Left, left);
+    change(to_right ? right : left);
+    for (auto& lane : lanes_) lane->list_owned();
+    lanes_[0]->take_ghosts({}, left);
+    lanes_[1]->take_ghosts(right, {});
+    for (auto& lane : lanes_) {
+      lane->restore_history();
+      lane->cut_chunks(64);
+    }
+  }
+
+  void begin_step() {
+    for (auto& lane : lanes_) {
+      lane->begin_step({world_.dt, {}, 0.0});
+      for (int c = 0; c < lane->num_chunks(); ++c) lane->run_chunk(c);
+    }
+  }
+
+  template <class Change>
+  void step(bool to_right, Change&& change) {
+    begin_step();
+    lanes_[1]->finish_band(Lane<Dim>::Left);
+    if (lanes_[0]->band(Lane<Dim>::Right).returns)
+      lanes_[0]->finish_right_band(returned_forces());
+    else
+      lanes_[0]->finish_band(Lane<Dim>::Right);
+    Bytes right(lanes_[0]->halo_bytes(Lane<Dim>::Right)),
+        left(lanes_[1]->halo_bytes(Lane<Dim>::Left));
+    lanes_[0]->pack_halo(Lane<Dim>::Right, right);
+    lanes_[1]->pack_halo(Lane<Dim>::Left, left);
+    change(to_right ? right : left);
+    lanes_[0]->unpack_halo(Lane<Dim>::Right, left);
+    lanes_[1]->unpack_halo(Lane<Dim>::Left, right);
+  }
+  void step() {
+    step(true, [](Bytes&) {});
+  }
+
+  void save() {
+    CheckpointShare share;
+    for (auto& lane : lanes_) {
+      lane->save(share);
+      (void)lane->measure(Vec3::Zero());
+      (void)lane->travel();
+    }
+  }
+
+  World<Dim> world_;
+  std::array<std::unique_ptr<Lane<Dim>>, 2> lanes_;
+};
+
+}  // namespace barchan::fuzz

@@ -1,0 +1,118 @@
+#include <barchan/core/lane_messages.hpp>
+
+#include <gtest/gtest.h>
+
+#include <barchan/core/bytes.hpp>
+#include <barchan/core/error.hpp>
+
+#include "lane_fixture.hpp"
+
+namespace barchan::test {
+namespace {
+
+constexpr int kSlabs = 6;
+
+World<2> world_with_a_wall_and_a_bond() {
+  Domain domain;
+  domain.hi = Vec3(7.0, 2.4, 0.0);
+  World<2> world = world_of<2>(domain, 1.1, 0.1, 20);
+  world.bond_laws.resize(1);
+  world.walls.resize(1);
+  return world;
+}
+
+/// A migrant with a contact, a wall and a bond.
+Migration<2> a_migration(const World<2>& world) {
+  Migration<2> m;
+  ParticleRecord<2> p{};
+  p.id = 7;
+  p.motion[0] = 3.5;
+  p.motion[1] = 1.2;
+  p.key = world.grid.key(p.motion);
+  p.type = 1;
+  m.particles = {p};
+  m.contacts = {{0, 9, {0.25}}};
+  m.walls = {{0, 0, {0.5}}};
+  m.bonds = {{{7, 9, 0, 0.1, {}}, 1}};
+  return m;
+}
+
+TEST(LaneMessages, BringArrivalsAcrossWithHistoryAndBonds) {
+  const World<2> world = world_with_a_wall_and_a_bond();
+  std::vector<std::byte> message;
+  encode(a_migration(world), message);
+
+  const Migration<2> came = decode_migration(message, world, 0, kSlabs);
+
+  EXPECT_EQ(came.particles.at(0).id, 7);
+  EXPECT_EQ(came.contacts.at(0).spring[0], 0.25);
+  EXPECT_EQ(came.walls.at(0).spring[0], 0.5);
+  EXPECT_EQ(came.bonds.at(0).bond.id_b, 9);
+}
+
+TEST(LaneMessages, RefuseWhatWouldLeaveAnArray) {
+  const World<2> world = world_with_a_wall_and_a_bond();
+  const auto refuses = [&world](auto&& spoil) {
+    Migration<2> m = a_migration(world);
+    spoil(m);
+    std::vector<std::byte> message;
+    encode(m, message);
+    EXPECT_THROW((void)decode_migration(message, world, 0, kSlabs), RunError);
+  };
+  refuses([](Migration<2>& m) { m.particles[0].id = 0; });
+  refuses([](Migration<2>& m) { m.particles[0].key = -1; });
+  refuses([](Migration<2>& m) { m.particles[0].key += 1; });
+  refuses([](Migration<2>& m) { m.particles[0].type = 2; });
+  refuses([](Migration<2>& m) { m.particles[0].flags = 4; });
+  refuses([](Migration<2>& m) { m.contacts[0].handle = 1; });
+  refuses([](Migration<2>& m) { m.contacts[0].handle = -1; });
+  refuses([](Migration<2>& m) { m.walls[0].number = 1; });
+  refuses([](Migration<2>& m) { m.walls[0].wall = 1; });
+  refuses([](Migration<2>& m) { m.bonds[0].bond.law = 1; });
+  refuses([](Migration<2>& m) { m.bonds[0].bond.id_b = 7; });
+}
+
+TEST(LaneMessages, RefuseEveryCut) {
+  const World<2> world = world_with_a_wall_and_a_bond();
+  std::vector<std::byte> message;
+  encode(a_migration(world), message);
+  for (std::size_t size = 0; size < message.size(); ++size) {
+    EXPECT_THROW((void)decode_migration(std::span(message).first(size), world, 0, kSlabs), RunError)
+        << size;
+  }
+  message.emplace_back();
+  EXPECT_THROW((void)decode_migration(message, world, 0, kSlabs), RunError);
+}
+
+TEST(LaneMessages, TellAParticleThatJumpedOverAStrip) {
+  const World<2> world = world_with_a_wall_and_a_bond();
+  std::vector<std::byte> message;
+  encode(a_migration(world), message);
+  try {
+    (void)decode_migration(message, world, 0, 2);
+    FAIL();
+  } catch (const RunError& e) {
+    EXPECT_NE(std::string(e.what()).find("particle 7 jumped over a whole strip"),
+              std::string::npos);
+  }
+}
+
+TEST(LaneMessages, RefuseGhostsOutOfOrderOrOfAnotherSlab) {
+  const World<2> world = world_with_a_wall_and_a_bond();
+  ParticleRecord<2> first = a_migration(world).particles[0], second = first;
+  second.id = 8;
+  const int slab = static_cast<int>(first.key / world.grid.slab_size());
+  const auto decode = [&world](const std::vector<ParticleRecord<2>>& ghosts, int of_slab) {
+    std::vector<std::byte> message;
+    ByteWriter(message).put_counted(ghosts);
+    return decode_ghosts(message, world, of_slab).size();
+  };
+
+  EXPECT_EQ(decode({first, second}, slab), 2U);
+  EXPECT_THROW(decode({second, first}, slab), RunError);
+  EXPECT_THROW(decode({first, first}, slab), RunError);
+  EXPECT_THROW(decode({first}, slab + 1), RunError);
+}
+
+}  // namespace
+}  // namespace barchan::test
