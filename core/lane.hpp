@@ -299,8 +299,8 @@ class Lane {
   std::int64_t steps_since_start_ = 0;
   SearchSeconds search_seconds_;
   int slab_begin_ = 0, slab_end_ = 0;
-  double last_distance2_ = 0.0;  ///< of the last step with the lists before these
-  std::array<RowSpeeds, 3> speeds_{};  ///< in this step: of either band, of all other rows
+  double last_distance2_ = 0.0;              ///< of the last step with the lists before these
+  std::array<RowSpeeds, 3> speeds_{};        ///< in this step: of either band, of all other rows
   double step_travel_ = 0.0, travel_ = 0.0;  ///< bounds: of the last step, since the lists were cut
 
   /// A contact's spring while lists are made anew, by the rows that it had before.

@@ -161,7 +161,8 @@ template <int Dim>
 void Lane<Dim>::restore_history() {
   for (const KeptContact& c : kept_) {
     if (loses(Loss::Contact)) continue;
-    place(new_row_[static_cast<std::size_t>(c.i)], new_row_[static_cast<std::size_t>(c.j)], c.spring);
+    place(new_row_[static_cast<std::size_t>(c.i)], new_row_[static_cast<std::size_t>(c.j)],
+          c.spring);
   }
   kept_.clear();
   for (const LooseContact<Dim>& c : loose_) {

@@ -5,8 +5,9 @@
 
 // Where many candidates do not touch, a block of the owned list works on those alone that touch or
 // are about to: a narrow phase tells which they are, and pairs, laws and springs are packed to the
-// front of the block. They serve until particles may have come far enough for another pair to touch;
-// one that parted meanwhile has no force and loses its spring, as it would in the whole list.
+// front of the block. They serve until particles may have come far enough for another pair to
+// touch; one that parted meanwhile has no force and loses its spring, as it would in the whole
+// list.
 //
 //   candidates   | a b c d e f g h | …        springs, unpacked   | a – c – – f g – |
 //   mask         | 1 0 1 0 0 1 1 0 |          springs, packed     | a c f g | …
@@ -103,7 +104,8 @@ void Lane<Dim>::pack(Block& block, const std::uint8_t* masks) {
   std::int64_t old = 0, now = 0;
   for (std::int64_t k = 0; k < size; ++k) {
     const bool was = has_bit(known, k);
-    const auto from = first + static_cast<std::size_t>(k), to = first + static_cast<std::size_t>(now);
+    const auto from = first + static_cast<std::size_t>(k),
+               to = first + static_cast<std::size_t>(now);
     list.packed_i[to] = list.i[from];
     list.packed_j[to] = list.j[from];
     list.packed_code[to] = list.code[from];

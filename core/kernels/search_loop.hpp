@@ -33,8 +33,7 @@ int find_within_reach(const SearchJob& job, std::int32_t begin, std::int32_t end
 
 template <class S>
 SearchKernel pick_search(int dim, bool periodic) {
-  if (dim == 2)
-    return periodic ? &find_within_reach<S, 2, true> : &find_within_reach<S, 2, false>;
+  if (dim == 2) return periodic ? &find_within_reach<S, 2, true> : &find_within_reach<S, 2, false>;
   return periodic ? &find_within_reach<S, 3, true> : &find_within_reach<S, 3, false>;
 }
 
