@@ -1,5 +1,7 @@
 #pragma once
 
+#include <type_traits>
+
 namespace barchan {
 
 // Linear spring–dashpot with Coulomb friction, written once for one pair, four or eight (S:
@@ -23,6 +25,11 @@ struct LawConstants {
   Real cn, ct;                                      ///< constant parts [N·s/m]
   Real cn_rate, ct_rate, cn_critical, ct_critical;  ///< read only where damping depends on mass
 };
+
+/// What a look-up of constants gives. By reference if it is the same for all pairs: compilers copy
+/// hundreds of bytes for every batch otherwise.
+template <class S, bool OneLaw>
+using Looked = std::conditional_t<OneLaw, const LawConstants<S>&, LawConstants<S>>;
 
 template <class S, int Dim>
 struct PairState;

@@ -1,8 +1,38 @@
 #include <barchan/core/contact_search.hpp>
 
-#include <cmath>
+#include <algorithm>
+#include <array>
 
 namespace barchan {
+
+template <int Dim>
+void Planes::write(const ParticleStore<Dim>& store, Rows rows) {
+  first = rows.begin;
+  const auto n = static_cast<std::size_t>(rows.end - rows.begin);
+  for (int c = 0; c < Dim; ++c) resize_with_room(axis[c], n + kBatch);
+  resize_with_room(radius, n + kBatch);
+  for (std::size_t q = 0; q < n; ++q) {
+    const double* x = store.x(first + static_cast<std::int32_t>(q));
+    for (int c = 0; c < Dim; ++c) axis[c][q] = x[c];
+    radius[q] = x[Layout<Dim>::kRadius];
+  }
+}
+
+std::size_t Planes::bytes() const {
+  std::size_t total = radius.capacity();
+  for (const auto& a : axis) total += a.capacity();
+  return 8 * total;
+}
+
+template <int Dim>
+ContactSearch<Dim>::ContactSearch(const Grid<Dim>& grid, const ParticleStore<Dim>& store,
+                                  const Planes& planes, const SearchRule& rule)
+    : grid_(grid), store_(store), rule_(rule) {
+  for (int c = 0; c < Dim; ++c) job_.x[c] = planes.axis[c].data();
+  job_.radius = planes.radius.data();
+  job_.first = planes.first;
+  job_.box = grid.box();
+}
 
 template <int Dim>
 std::uint8_t ContactSearch<Dim>::law(std::int32_t i, std::int32_t j) const {
@@ -16,31 +46,23 @@ std::uint8_t ContactSearch<Dim>::law(std::int32_t i, std::int32_t j) const {
 }
 
 template <int Dim>
-template <bool Periodic>
-void ContactSearch<Dim>::row(std::int32_t i, Rows partners, PairList& list) const {
-  using Store = ParticleStore<Dim>;
-  const PeriodicBox& box = grid_.box();
-  const double* a = store_.x(i);
-  const double reach_i = store_.radius(i) + rule_.skin;
-  const bool fixed = (store_.flags[static_cast<std::size_t>(i)] & Store::kFixed) != 0;
-  for (std::int32_t j = partners.begin; j < partners.end; ++j) {
-    const double* b = store_.x(j);
-    double d2 = 0.0;
-    for (int c = 0; c < Dim; ++c) {
-      double d = b[c] - a[c];
-      if constexpr (Periodic) d -= box.length[c] * std::rint(d * box.inverse[c]);
-      d2 += d * d;
-    }
-    const double reach = reach_i + store_.radius(j);
-    if (d2 >= reach * reach) continue;
-    if (fixed && (store_.flags[static_cast<std::size_t>(j)] & Store::kFixed) != 0) continue;
-    list.push(i, j, law(i, j));
-  }
-}
-
-template <int Dim>
 void ContactSearch<Dim>::scan(std::int32_t i, Rows partners, PairList& list) const {
-  grid_.box().any() ? row<true>(i, partners, list) : row<false>(i, partners, list);
+  using Store = ParticleStore<Dim>;
+  constexpr std::int32_t kSlice = 1024;
+  SearchJob job = job_;
+  std::copy_n(store_.x(i), Dim, job.at);
+  job.reach = store_.radius(i) + rule_.skin;
+  const bool fixed = (store_.flags[static_cast<std::size_t>(i)] & Store::kFixed) != 0;
+  std::array<std::int32_t, kSlice + kBatch> found;
+  for (std::int32_t begin = partners.begin; begin < partners.end; begin += kSlice) {
+    const std::int32_t end = std::min(partners.end, begin + kSlice);
+    const int count = rule_.kernel(job, begin, end, found.data());
+    for (int q = 0; q < count; ++q) {
+      const std::int32_t j = found[static_cast<std::size_t>(q)];
+      if (fixed && (store_.flags[static_cast<std::size_t>(j)] & Store::kFixed) != 0) continue;
+      list.push(i, j, law(i, j));
+    }
+  }
 }
 
 template <int Dim>
@@ -59,8 +81,12 @@ void ContactSearch<Dim>::owned(const CellIndex& cells, Rows rows, PairList& list
       around.collect(grid_, cells, key, grid_.is_periodic(0) ? -1 : 0, 1, key);
       last_key = key;
     }
-    scan(i, {i + 1, cells.cells(key, key + 1).end}, list);
-    for (int q = 0; q < around.count; ++q)
+    // The cells that follow this one along its line lie behind it in storage too.
+    Rows behind{i + 1, cells.cells(key, key + 1).end};
+    const bool joined = around.count > 0 && around.ranges[0].begin == behind.end;
+    if (joined) behind.end = around.ranges[0].end;
+    scan(i, behind, list);
+    for (int q = joined ? 1 : 0; q < around.count; ++q)
       scan(i, around.ranges[static_cast<std::size_t>(q)], list);
   }
 }
@@ -83,6 +109,8 @@ void ContactSearch<Dim>::across(const CellIndex& lower, const CellIndex& higher,
   }
 }
 
+template void Planes::write(const ParticleStore<2>&, Rows);
+template void Planes::write(const ParticleStore<3>&, Rows);
 template class ContactSearch<2>;
 template class ContactSearch<3>;
 

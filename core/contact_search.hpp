@@ -6,10 +6,21 @@
 
 #include <barchan/core/bonded_pairs.hpp>
 #include <barchan/core/cell_index.hpp>
+#include <barchan/core/kernels/search_job.hpp>
 #include <barchan/core/law_table.hpp>
 #include <barchan/core/pair_list.hpp>
 
 namespace barchan {
+
+/// Positions and radii of some rows, axis by axis, as the search reads them.
+struct Planes {
+  AlignedVector<double> axis[3], radius;  ///< a batch longer than the rows
+  std::int32_t first = 0;                 ///< row of the first value
+
+  template <int Dim>
+  void write(const ParticleStore<Dim>& store, Rows rows);
+  [[nodiscard]] std::size_t bytes() const;
+};
 
 /// What decides whether a pair is a candidate, and which law it gets.
 struct SearchRule {
@@ -17,6 +28,7 @@ struct SearchRule {
   ContactSearchKind kind = ContactSearchKind::Cells;
   const LawTable* laws = nullptr;
   const BondedPairs* bonded = nullptr;
+  SearchKernel kernel = nullptr;
 };
 
 /// Candidates: pairs closer than r_i + r_j + skin, lower particle first, sorted by both indices.
@@ -27,8 +39,9 @@ struct SearchRule {
 template <int Dim>
 class ContactSearch {
  public:
-  ContactSearch(const Grid<Dim>& grid, const ParticleStore<Dim>& store, const SearchRule& rule)
-      : grid_(grid), store_(store), rule_(rule) {}
+  /// @param planes  of all rows that are looked for
+  ContactSearch(const Grid<Dim>& grid, const ParticleStore<Dim>& store, const Planes& planes,
+                const SearchRule& rule);
 
   /// Appends the candidates of owned rows [rows.begin, rows.end) with owned partners; row_begin[i]
   /// = first pair of row i.
@@ -42,14 +55,13 @@ class ContactSearch {
               PairList& list) const;
 
  private:
-  template <bool Periodic>
-  void row(std::int32_t i, Rows partners, PairList& list) const;
   void scan(std::int32_t i, Rows partners, PairList& list) const;
   [[nodiscard]] std::uint8_t law(std::int32_t i, std::int32_t j) const;
 
   const Grid<Dim>& grid_;
   const ParticleStore<Dim>& store_;
   SearchRule rule_;
+  SearchJob job_;
 };
 
 extern template class ContactSearch<2>;

@@ -52,6 +52,7 @@ struct Band {
   bool returns = false;  ///< published scheme: the right-hand side computes the pairs of this cut
   Rows rows;             ///< owned rows that are somebody's ghosts
   CellIndex ghost_cells;
+  Planes planes;  ///< of the higher ones of the pairs across
   PairList across;
 };
 
@@ -129,8 +130,10 @@ class Lane {
   LinkCounts remove(std::span<const std::int64_t> ids);
 
   // ---- what a run that goes wrong says (lane_watch.cpp), between steps
-  /// A particle moved farther than half the skin in one of the steps so far, or is not finite.
-  [[nodiscard]] bool is_fast() const { return is_fast_; }
+  /// A particle moved farther than half the skin in the last step, or is not finite.
+  [[nodiscard]] bool is_fast() const {
+    return std::any_of(speeds_.begin(), speeds_.end(), [](auto s) { return s.is_beyond; });
+  }
   /// The fastest one; one that is not finite before all others. -1: there is none
   [[nodiscard]] std::int32_t fastest_row() const;
   /// What a row touches.
@@ -219,15 +222,14 @@ class Lane {
   struct Block {
     int list = 0;
     std::int64_t begin = 0, end = 0;
-    std::int64_t num_touching = 0;
+    std::int64_t num_packed = 0;
     std::int32_t prefetch_begin = 0,
                  prefetch_end = 0;  ///< rows that blocks before this one have not met
     std::int32_t final_row = 0;     ///< rows before this one are complete after the block
     bool has_extras = false;        ///< bonds, walls or external forces among them
-    bool is_packed = false;         ///< works on its touching pairs, packed to its front
+    bool is_packed = false;         ///< works on pairs that touch or nearly do, packed to its front
+    double packed_until = 0.0;      ///< travel of the lane up to which no other pair can touch [m]
   };
-  static constexpr std::int64_t kBlockPairs =
-      32 * kBatch;  ///< a block's rows stay in the first cache
 
   void queue_links(const CheckpointShare& share,
                    const std::unordered_map<std::int64_t, std::int32_t>& row_of);
@@ -249,11 +251,12 @@ class Lane {
   void run_block(Block& block);
   void prefetch(const Block& block) const;
   void run_touching(Block& block, PairJob pairs);
+  [[nodiscard]] double packing_margin() const;  ///< [m]
   void pack(Block& block, const std::uint8_t* masks);
   [[nodiscard]] bool packs() const {
     return world_->kernels.narrow != nullptr && world_->search == ContactSearchKind::Cells;
   }
-  void finish_rows(std::int32_t begin, std::int32_t end, bool has_extras);
+  void finish_rows(std::int32_t begin, std::int32_t end, bool has_extras, RowSpeeds& speeds);
   void replay(Rows rows);
   void compute_bonds(typename BondSet<Dim>::Group group);
   void unbind(std::int32_t bond);
@@ -263,6 +266,7 @@ class Lane {
   void cut_blocks();
   void prepare_packing();
   void redirect(PairList& list) const;
+  [[nodiscard]] SearchRule search_rule() const;
   void find_owned();
   void list_across(Side side);
   void list_bonded();
@@ -275,21 +279,19 @@ class Lane {
   void place(std::int32_t a, std::int32_t b, const double* spring_a_to_b);
   void collect_loose(std::array<Migration<Dim>, 2>& leaving, const std::vector<std::int8_t>& goes,
                      const std::vector<std::int32_t>& number);
-  void carry_owned();
-  void gather_rows(const std::vector<std::int32_t>& source);
 
   World<Dim>* world_;
   StepFrame frame_;
-  Store store_, spare_;
-  std::array<PairList, kNumLists> lists_, old_lists_;
+  Store store_;
+  std::array<PairList, kNumLists> lists_;
   std::array<Band, 2> bands_;
-  std::array<PairList, 2> old_across_;
   BondSet<Dim> bonds_;
   BondedPairs bonded_;
   WallContacts<Dim> walls_;
   std::vector<WallContact<Dim>> old_walls_;
   std::vector<WallSums> wall_sums_;
   CellIndex cells_;
+  Planes planes_;
   std::vector<std::int64_t> row_begin_;
   std::vector<Block> blocks_;
   std::vector<int> chunks_{0};  ///< first block of each chunk, and the end
@@ -297,7 +299,21 @@ class Lane {
   std::int64_t steps_since_start_ = 0;
   SearchSeconds search_seconds_;
   int slab_begin_ = 0, slab_end_ = 0;
-  double last_distance2_ = 0.0;  ///< of the last step with the lists before these
+  double last_distance2_ = 0.0;              ///< of the last step with the lists before these
+  std::array<RowSpeeds, 3> speeds_{};        ///< in this step: of either band, of all other rows
+  double step_travel_ = 0.0, travel_ = 0.0;  ///< bounds: of the last step, since the lists were cut
+
+  /// A contact's spring while lists are made anew, by the rows that it had before.
+  struct KeptContact {
+    std::int32_t i = 0, j = 0;
+    double spring[L::kSprings] = {};
+  };
+  std::vector<KeptContact> kept_;  ///< sorted by (i, j)
+
+  static void keep(const PairList& list, std::int64_t k, std::vector<KeptContact>& to);
+  static void keep_springs(const PairList& list, std::vector<KeptContact>& to);
+  /// Springs of pairs that are in both; takes what it has passed from the front of `kept`.
+  void put_springs(PairList& list, std::span<const KeptContact>& kept) const;
 
   // between begin_rebuild and restore_history
   std::vector<std::int32_t> new_row_;  ///< of every source row; -1: left
@@ -307,7 +323,6 @@ class Lane {
   std::vector<std::int64_t> removed_;  ///< ids that go in the next rebuild, ascending
   LinkCounts imbalance_;
   Loss loss_ = Loss::Nothing;
-  bool is_fast_ = false;
 };
 
 extern template class Lane<2>;

@@ -38,7 +38,7 @@ void Lane<Dim>::collect_loose(std::array<Migration<Dim>, 2>& leaving,
                               const std::vector<std::int8_t>& goes,
                               const std::vector<std::int32_t>& number) {
   unpack_history();
-  lists_.swap(old_lists_);
+  kept_.clear();
   const auto loosen = [&](const PairList& list, bool counts) {
     for (std::int64_t k = 0; k < list.size(); ++k) {
       if (!list.template has_spring<Dim>(k)) continue;
@@ -51,7 +51,10 @@ void Lane<Dim>::collect_loose(std::array<Migration<Dim>, 2>& leaving,
       };
       const bool both_stay = store_.is_owned(ends[0]) && store_.is_owned(ends[1]) &&
                              !leaves(ends[0]) && !leaves(ends[1]);
-      if (both_stay) continue;
+      if (both_stay) {
+        keep(list, k, kept_);
+        continue;
+      }
       for (int e = 0; e < 2; ++e) {
         if (!store_.is_owned(ends[e])) continue;
         const auto own = static_cast<std::size_t>(ends[e]);
@@ -70,7 +73,8 @@ void Lane<Dim>::collect_loose(std::array<Migration<Dim>, 2>& leaving,
       }
     }
   };
-  for (const PairList& list : old_lists_) loosen(list, true);
+  for (const PairList& list : lists_) loosen(list, true);
+  if (kept_.capacity() > kept_.size() + kept_.size() / 2) kept_.shrink_to_fit();
   for (const Side side : {Left, Right}) {
     if (bands_[side].exists) loosen(bands_[side].across, side == Left);
   }
@@ -145,24 +149,22 @@ void Lane<Dim>::place(std::int32_t a, std::int32_t b, const double* spring) {
 }
 
 template <int Dim>
-void Lane<Dim>::carry_owned() {
-  double spring[L::kSprings];
-  for (const PairList& list : old_lists_) {
-    for (std::int64_t k = 0; k < list.size(); ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      if (!list.template has_spring<Dim>(k)) continue;
-      const std::int32_t a = new_row_[static_cast<std::size_t>(list.i[at])],
-                         b = new_row_[static_cast<std::size_t>(list.j[at])];
-      if (a < 0 || b < 0 || loses(Loss::Contact)) continue;
-      for (int c = 0; c < L::kSprings; ++c) spring[c] = list.template springs<Dim>(k)[c * kBatch];
-      place(a, b, spring);
-    }
-  }
+void Lane<Dim>::keep(const PairList& list, std::int64_t k, std::vector<KeptContact>& to) {
+  const auto at = static_cast<std::size_t>(k);
+  KeptContact& c = to.emplace_back();
+  c.i = list.i[at];
+  c.j = list.j[at];
+  for (int q = 0; q < L::kSprings; ++q) c.spring[q] = list.template springs<Dim>(k)[q * kBatch];
 }
 
 template <int Dim>
 void Lane<Dim>::restore_history() {
-  carry_owned();
+  for (const KeptContact& c : kept_) {
+    if (loses(Loss::Contact)) continue;
+    place(new_row_[static_cast<std::size_t>(c.i)], new_row_[static_cast<std::size_t>(c.j)],
+          c.spring);
+  }
+  kept_.clear();
   for (const LooseContact<Dim>& c : loose_) {
     const std::int32_t row = new_row_[static_cast<std::size_t>(c.handle)];
     const std::int32_t partner = find_near(row, c.partner);

@@ -6,29 +6,6 @@
 // Candidate lists of a lane, and the blocks in which the step walks over them.
 
 namespace barchan {
-namespace {
-
-/// History of an earlier list of the same rows; both lists are sorted by (i, j).
-template <int Dim>
-void carry_same_rows(const PairList& from, PairList& to) {
-  std::int64_t p = 0;
-  for (std::int64_t k = 0; k < to.size(); ++k) {
-    const auto a = static_cast<std::size_t>(k);
-    const auto behind = [&] {
-      const auto b = static_cast<std::size_t>(p);
-      return std::pair(from.i[b], from.j[b]) < std::pair(to.i[a], to.j[a]);
-    };
-    while (p < from.size() && behind()) ++p;
-    if (p == from.size()) return;
-    const auto b = static_cast<std::size_t>(p);
-    if (from.i[b] != to.i[a] || from.j[b] != to.j[a]) continue;
-    for (int c = 0; c < Layout<Dim>::kSprings; ++c)
-      to.template springs<Dim>(k)[c * kBatch] = from.template springs<Dim>(p)[c * kBatch];
-  }
-}
-
-}  // namespace
-
 template <int Dim>
 void Lane<Dim>::list_bonded() {
   bonded_.clear();
@@ -37,6 +14,11 @@ void Lane<Dim>::list_bonded() {
       bonded_.add(bonds_.bonds()[b].id_a, bonds_.bonds()[b].id_b);
   }
   bonded_.finish();
+}
+
+template <int Dim>
+SearchRule Lane<Dim>::search_rule() const {
+  return {world_->skin, world_->search, &world_->laws, &bonded_, world_->kernels.search};
 }
 
 template <int Dim>
@@ -57,8 +39,8 @@ void Lane<Dim>::find_owned() {
   const std::int32_t high =
       held_high ? std::max(low, cells_.first_row(slab_end_ - 2, slab_size)) : n;
 
-  const ContactSearch<Dim> search(world_->grid, store_,
-                                  {world_->skin, world_->search, &world_->laws, &bonded_});
+  planes_.write(store_, {0, n});
+  const ContactSearch<Dim> search(world_->grid, store_, planes_, search_rule());
   const Rows parts[kNumLists] = {{0, low}, {low, high}, {high, n}};
   row_begin_.resize(static_cast<std::size_t>(n) + 1);
   for (int l = 0; l < kNumLists; ++l) {
@@ -66,6 +48,7 @@ void Lane<Dim>::find_owned() {
     list.clear();
     search.owned(cells_, parts[l], list, row_begin_);
     list.pad(store_.waste());
+    list.trim();
     list.template reset_springs<Dim>();
     if (l != Owned) redirect(list);
   }
@@ -78,7 +61,7 @@ void Lane<Dim>::redirect(PairList& list) const {
     return (bands_[Left].ghosts_first && i < bands_[Left].rows.end) ||
            (bands_[Right].ghosts_first && i >= bands_[Right].rows.begin);
   };
-  list.result.resize(list.i.size() * L::kForce);
+  resize_with_room(list.result, list.i.size() * L::kForce);
   for (std::size_t k = 0; k < list.i.size(); ++k) {
     list.row_i.push_back(held(list.i[k]) ? store_.waste() : list.i[k]);
     list.row_j.push_back(held(list.j[k]) ? store_.waste() + 1 : list.j[k]);
@@ -88,6 +71,7 @@ void Lane<Dim>::redirect(PairList& list) const {
 template <int Dim>
 void Lane<Dim>::cut_blocks() {
   blocks_.clear();
+  travel_ = 0.0;
   const std::int32_t first = bands_[Left].rows.end, last = bands_[Right].rows.begin;
   for (int l = 0; l < kNumLists; ++l) {
     const PairList& list = lists_[static_cast<std::size_t>(l)];
@@ -117,9 +101,9 @@ void Lane<Dim>::cut_blocks() {
 template <int Dim>
 void Lane<Dim>::prepare_packing() {
   PairList& list = lists_[Owned];
-  list.packed_i.resize(list.i.size());
-  list.packed_j.resize(list.i.size());
-  list.packed_code.resize(list.i.size());
+  resize_with_room(list.packed_i, list.i.size());
+  resize_with_room(list.packed_j, list.i.size());
+  resize_with_room(list.packed_code, list.i.size());
   list.mask.resize(list.i.size() / kBatch);
   // While a block is worked on, the rows that the next one meets first are on their way to the
   // cache.
@@ -178,14 +162,14 @@ void Lane<Dim>::list_across(Side side) {
   own.first_key = own.slab_begin * slab_size;
   const auto from = cells_.start.begin() + (own.slab_begin - slab_begin_) * slab_size;
   own.start.assign(from, from + slab_size + 1);
-  const ContactSearch<Dim> search(world_->grid, store_,
-                                  {world_->skin, world_->search, &world_->laws, &bonded_});
   const int towards = side == Left ? -1 : 1;  // from owned to ghost
-  if (band.ghosts_first)
-    search.across(band.ghost_cells, own, -towards, band.across);
-  else
-    search.across(own, band.ghost_cells, towards, band.across);
+  const CellIndex& lower = band.ghosts_first ? band.ghost_cells : own;
+  const CellIndex& higher = band.ghosts_first ? own : band.ghost_cells;
+  band.planes.write(store_, {higher.start.front(), higher.start.back()});
+  ContactSearch<Dim>(world_->grid, store_, band.planes, search_rule())
+      .across(lower, higher, band.ghosts_first ? -towards : towards, band.across);
   band.across.pad(store_.waste());
+  band.across.trim();
   band.across.template reset_springs<Dim>();
   band.across.result.resize(band.returns ? band.across.i.size() * L::kForce : 0);
 }
@@ -193,21 +177,44 @@ void Lane<Dim>::list_across(Side side) {
 template <int Dim>
 void Lane<Dim>::research_owned() {
   const Stopwatch watch(search_seconds_.chunks);
-  lists_.swap(old_lists_);
+  kept_.clear();
+  for (const PairList& list : lists_) keep_springs(list, kept_);
   find_owned();
   cut_chunks(std::int64_t{1} << 60);
-  for (int l = 0; l < kNumLists; ++l) {
-    carry_same_rows<Dim>(old_lists_[static_cast<std::size_t>(l)],
-                         lists_[static_cast<std::size_t>(l)]);
-  }
+  std::span<const KeptContact> kept(kept_);
+  for (PairList& list : lists_) put_springs(list, kept);
 }
 
 template <int Dim>
 void Lane<Dim>::research_across(Side side) {
   const Stopwatch watch(search_seconds_.bands);
-  std::swap(bands_[side].across, old_across_[side]);
+  PairList& list = bands_[side].across;
+  std::vector<KeptContact> before;  // of its own: the other band may be at it too
+  keep_springs(list, before);
   list_across(side);
-  carry_same_rows<Dim>(old_across_[side], bands_[side].across);
+  std::span<const KeptContact> kept(before);
+  put_springs(list, kept);
+}
+
+template <int Dim>
+void Lane<Dim>::keep_springs(const PairList& list, std::vector<KeptContact>& to) {
+  for (std::int64_t k = 0; k < list.size(); ++k) {
+    if (list.template has_spring<Dim>(k)) keep(list, k, to);
+  }
+}
+
+template <int Dim>
+void Lane<Dim>::put_springs(PairList& list, std::span<const KeptContact>& kept) const {
+  for (std::int64_t k = 0; k < list.size() && !kept.empty(); ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    if (list.i[at] == store_.waste()) break;  // padding
+    const std::pair here(list.i[at], list.j[at]);
+    const auto of_front = [&] { return std::pair(kept.front().i, kept.front().j); };
+    while (!kept.empty() && of_front() < here) kept = kept.subspan(1);
+    if (kept.empty() || of_front() != here) continue;
+    for (int c = 0; c < L::kSprings; ++c)
+      list.template springs<Dim>(k)[c * kBatch] = kept.front().spring[c];
+  }
 }
 
 template <int Dim>
@@ -220,14 +227,13 @@ std::int64_t Lane<Dim>::num_pairs() const {
 
 template <int Dim>
 std::size_t Lane<Dim>::bytes() const {
-  std::size_t total = store_.bytes() + spare_.bytes() + bonds_.bytes() + 8 * row_begin_.capacity() +
-                      4 * (cells_.start.capacity() + new_row_.capacity()) +
-                      blocks_.capacity() * sizeof(Block) +
-                      walls_.list().capacity() * sizeof(WallContact<Dim>);
-  for (const auto* lists : {&lists_, &old_lists_}) {
-    for (const PairList& list : *lists) total += list.bytes();
-  }
-  for (const Band& band : bands_) total += band.across.bytes();
+  std::size_t total =
+      store_.bytes() + bonds_.bytes() + planes_.bytes() + kept_.capacity() * sizeof(KeptContact) +
+      loose_.capacity() * sizeof(LooseContact<Dim>) + 8 * row_begin_.capacity() +
+      4 * (cells_.start.capacity() + new_row_.capacity()) + blocks_.capacity() * sizeof(Block) +
+      walls_.list().capacity() * sizeof(WallContact<Dim>);
+  for (const PairList& list : lists_) total += list.bytes();
+  for (const Band& band : bands_) total += band.across.bytes() + band.planes.bytes();
   return total;
 }
 

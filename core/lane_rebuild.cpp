@@ -2,6 +2,7 @@
 
 #include <barchan/core/bytes.hpp>
 #include <barchan/core/lane.hpp>
+#include <barchan/core/row_order.hpp>
 #include <barchan/core/stopwatch.hpp>
 
 // Ownership and order: who leaves, who arrives, canonical order, ghosts.
@@ -131,12 +132,12 @@ void Lane<Dim>::absorb(std::span<const std::byte> message) {
   const auto first = static_cast<std::int32_t>(goes_.size());
   const std::int32_t end = first + static_cast<std::int32_t>(particles.size());
   const auto rows = static_cast<std::size_t>(std::max(end + 2, store_.size()));
-  store_.motion.resize(rows * L::kMotion);
-  store_.spin.resize(rows * L::kSpin);
-  store_.id.resize(rows);
-  store_.key.resize(rows);
-  store_.type.resize(rows);
-  store_.flags.resize(rows);
+  resize_with_room(store_.motion, rows * L::kMotion);
+  resize_with_room(store_.spin, rows * L::kSpin);
+  resize_with_room(store_.id, rows);
+  resize_with_room(store_.key, rows);
+  resize_with_room(store_.type, rows);
+  resize_with_room(store_.flags, rows);
   goes_.resize(static_cast<std::size_t>(end), 0);
   for (std::size_t p = 0; p < particles.size(); ++p) {
     const auto row = first + static_cast<std::int32_t>(p);
@@ -159,43 +160,6 @@ void Lane<Dim>::absorb(std::span<const std::byte> message) {
 }
 
 template <int Dim>
-void Lane<Dim>::gather_rows(const std::vector<std::int32_t>& source) {
-  const auto n = static_cast<std::int32_t>(source.size());
-  spare_.num_owned = n;
-  spare_.num_ghosts = {};
-  spare_.motion.resize(static_cast<std::size_t>(n + 2) * L::kMotion);
-  spare_.spin.resize(static_cast<std::size_t>(n + 2) * L::kSpin);
-  for (auto* column : {&spare_.id, &spare_.key}) column->resize(static_cast<std::size_t>(n + 2));
-  for (auto* column : {&spare_.type, &spare_.flags})
-    column->resize(static_cast<std::size_t>(n + 2));
-  spare_.external.resize(store_.external.empty() ? 0 : static_cast<std::size_t>(n) * L::kForce);
-  store_.external.resize(store_.external.empty() ? 0 : goes_.size() * L::kForce, 0.0);
-  for (std::int32_t i = 0; i < n; ++i) {
-    const std::int32_t from = source[static_cast<std::size_t>(i)];
-    const auto to = static_cast<std::size_t>(i), at = static_cast<std::size_t>(from);
-    std::copy_n(store_.x(from), 8, spare_.x(i));
-    if constexpr (Dim == 3) std::copy_n(store_.u(from), 4, spare_.u(i));
-    spare_.id[to] = store_.id[at];
-    spare_.key[to] = store_.key[at];
-    spare_.type[to] = store_.type[at];
-    spare_.flags[to] = store_.flags[at];
-    if (!store_.external.empty()) {
-      std::copy_n(store_.external.data() + at * L::kForce, int{L::kForce},
-                  spare_.external.data() + to * L::kForce);
-    }
-  }
-  std::swap(store_.motion, spare_.motion);
-  std::swap(store_.spin, spare_.spin);
-  std::swap(store_.id, spare_.id);
-  std::swap(store_.key, spare_.key);
-  std::swap(store_.type, spare_.type);
-  std::swap(store_.flags, spare_.flags);
-  std::swap(store_.external, spare_.external);
-  store_.num_owned = n;
-  store_.num_ghosts = {};
-}
-
-template <int Dim>
 void Lane<Dim>::order() {
   // Counting sort by cell, then by id within a cell.
   const std::int64_t first_key = slab_begin_ * world_->grid.slab_size();
@@ -210,6 +174,7 @@ void Lane<Dim>::order() {
   }
   for (std::size_t c = 0; c < num_cells; ++c) start[c + 1] += start[c];
   std::vector<std::int32_t> source(static_cast<std::size_t>(stays));
+  source.reserve(goes_.size());
   std::vector<std::int32_t> next(start.begin(), start.end() - 1);
   for (std::size_t row = 0; row < goes_.size(); ++row) {
     if (goes_[row] != 0) continue;
@@ -226,10 +191,17 @@ void Lane<Dim>::order() {
   new_row_.assign(goes_.size(), -1);
   for (std::int32_t i = 0; i < stays; ++i)
     new_row_[static_cast<std::size_t>(source[static_cast<std::size_t>(i)])] = i;
-  gather_rows(source);
+  for (std::size_t row = 0; row < goes_.size(); ++row) {
+    if (goes_[row] != 0) source.push_back(static_cast<std::int32_t>(row));
+  }
+  if (!store_.external.empty()) store_.external.resize(goes_.size() * L::kForce, 0.0);
+  move_rows(store_, source);
+  if (!store_.external.empty()) store_.external.resize(static_cast<std::size_t>(stays) * L::kForce);
+  store_.num_owned = stays;
+  store_.num_ghosts = {};
   store_.resize_for_ghosts();
   cells_.index(world_->grid, store_, {0, stays}, slab_begin_, slab_end_);
-  store_.reference.resize(static_cast<std::size_t>(stays) * Dim);
+  resize_with_room(store_.reference, static_cast<std::size_t>(stays) * Dim);
   for (std::int32_t i = 0; i < stays; ++i)
     std::copy_n(store_.x(i), Dim,
                 store_.reference.data() + std::size_t{Dim} * static_cast<std::size_t>(i));

@@ -78,7 +78,7 @@ void Lane<Dim>::finish_right_band(std::span<const double> results) {
   }
   if (band.ghosts_first) replay(band.rows);
   bonds_.import_group(BondSet<Dim>::Right, store_, f);
-  finish_rows(band.rows.begin, band.rows.end, true);
+  finish_rows(band.rows.begin, band.rows.end, true, speeds_[Right]);
 }
 
 template class Lane<2>;

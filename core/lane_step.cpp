@@ -44,6 +44,11 @@ PairJob Lane<Dim>::job(PairList& list) const {
 template <int Dim>
 void Lane<Dim>::begin_step(const StepFrame& frame) {
   frame_ = frame;
+  RowSpeeds all;
+  for (const RowSpeeds& speeds : speeds_) all.add(speeds);
+  step_travel_ = all.top * world_->dt;
+  travel_ += step_travel_;
+  speeds_ = {};
   if (world_->search == ContactSearchKind::AllPairs) research_owned();
   rows_done_ = bands_[Left].exists ? bands_[Left].rows.end : 0;
   wall_sums_.resize(world_->walls.size());
@@ -76,7 +81,7 @@ void Lane<Dim>::run_block(Block& block) {
     world_->kernels.pairs(pairs);
   }
   if (block.final_row > rows_done_) {
-    finish_rows(rows_done_, block.final_row, block.has_extras);
+    finish_rows(rows_done_, block.final_row, block.has_extras, speeds_.back());
     rows_done_ = block.final_row;
   }
 }
@@ -92,7 +97,8 @@ void Lane<Dim>::prefetch(const Block& block) const {
 }
 
 template <int Dim>
-void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extras) {
+void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extras,
+                            RowSpeeds& speeds) {
   if (has_extras || !store_.external.empty()) {
     bonds_.add_to_rows(store_, begin, end);
     const double dt = spring_step(frame_, world_->dt);
@@ -113,9 +119,10 @@ void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extra
               world_->dt,
               {frame_.gravity[0], frame_.gravity[1], frame_.gravity[2]},
               frame_.local_damping,
-              0.5 * world_->skin / world_->dt,
-              &is_fast_};
-  (frame_.local_damping != 0.0 ? world_->kernels.rows_damped : world_->kernels.rows)(rows);
+              0.5 * world_->skin / world_->dt};
+  const RowKernel advance =
+      frame_.local_damping != 0.0 ? world_->kernels.rows_damped : world_->kernels.rows;
+  speeds.add(advance(rows));
 }
 
 template <int Dim>
@@ -169,7 +176,7 @@ void Lane<Dim>::finish_band(Side side) {
   (band.across.result.empty() ? world_->kernels.pairs
                               : world_->kernels.pairs_kept)(job(band.across));
   if (band.ghosts_first) replay(band.rows);
-  finish_rows(band.rows.begin, band.rows.end, true);
+  finish_rows(band.rows.begin, band.rows.end, true, speeds_[side]);
 }
 
 template <int Dim>

@@ -1,11 +1,13 @@
 #include <algorithm>
-#include <cstring>
+#include <cmath>
 
 #include <barchan/core/lane.hpp>
 
-// Where many candidates do not touch, a block of the owned list works on its touching pairs alone:
-// a narrow phase tells which they are, and pairs, laws and springs are packed to the front of the
-// block. As long as the same pairs touch, nothing is moved.
+// Where many candidates do not touch, a block of the owned list works on those alone that touch or
+// are about to: a narrow phase tells which they are, and pairs, laws and springs are packed to the
+// front of the block. They serve until particles may have come far enough for another pair to
+// touch; one that parted meanwhile has no force and loses its spring, as it would in the whole
+// list.
 //
 //   candidates   | a b c d e f g h | …        springs, unpacked   | a – c – – f g – |
 //   mask         | 1 0 1 0 0 1 1 0 |          springs, packed     | a c f g | …
@@ -27,61 +29,99 @@ void clear_spring(double* to, std::int64_t a) {
   for (int c = 0; c < Layout<Dim>::kSprings; ++c) t[c * kBatch] = 0.0;
 }
 
+/// The springs of a block, component by component, and room for one pair more.
+template <int Dim>
+struct BlockSprings {
+  static constexpr int kSprings = Layout<Dim>::kSprings, kRoom = kBlockPairs + kBatch;
+  alignas(64) double value[kSprings][kRoom];
+
+  void read(const double* springs, std::int64_t count) {
+    for (std::int64_t k = 0; k < count; k += kBatch) {
+      for (int c = 0; c < kSprings; ++c)
+        std::copy_n(springs + k * kSprings + c * kBatch, int{kBatch}, value[c] + k);
+    }
+  }
+  void write(double* springs, std::int64_t count) const {
+    for (std::int64_t k = 0; k < count; k += kBatch) {
+      for (int c = 0; c < kSprings; ++c)
+        std::copy_n(value[c] + k, int{kBatch}, springs + k * kSprings + c * kBatch);
+    }
+  }
+  std::int64_t clear(std::int64_t k) {
+    for (auto& component : value) component[k] = 0.0;
+    return k;
+  }
+  void copy(std::int64_t to, const BlockSprings& other, std::int64_t from) {
+    for (int c = 0; c < kSprings; ++c) value[c][to] = other.value[c][from];
+  }
+};
+
 bool has_bit(const std::uint8_t* masks, std::int64_t k) {
   return (masks[k / 8] >> (k % 8) & 1) != 0;
 }
 
 }  // namespace
 
+// A narrow margin asks for the narrow phase often, a wide one lets more pairs in that do not touch.
+// Over n steps that cost n·margin/skin and 1/n, the best margin is about sqrt(skin · travel of a
+// step).
+template <int Dim>
+double Lane<Dim>::packing_margin() const {
+  return std::sqrt(world_->skin * step_travel_);
+}
+
 template <int Dim>
 void Lane<Dim>::run_touching(Block& block, PairJob pairs) {
-  PairList& list = lists_[Owned];
-  std::array<std::uint8_t, kBlockPairs / kBatch> masks;
-  world_->kernels.narrow(pairs, masks.data());
-  const std::int64_t bytes = (block.end - block.begin) / kBatch;
-  std::uint8_t* known = list.mask.data() + block.begin / kBatch;
-  if (!block.is_packed || std::memcmp(masks.data(), known, static_cast<std::size_t>(bytes)) != 0)
+  if (!block.is_packed || travel_ > block.packed_until) {
+    std::array<std::uint8_t, kBlockPairs / kBatch> masks;
+    const double margin = packing_margin();
+    world_->kernels.narrow(pairs, margin, masks.data());
     pack(block, masks.data());
+    // Both of a pair travel; a little less, for the rounding of positions and sums.
+    block.packed_until = travel_ + 0.499 * margin;
+  }
+  const PairList& list = lists_[Owned];
   pairs.i = pairs.row_i = list.packed_i.data();
   pairs.j = pairs.row_j = list.packed_j.data();
   pairs.code = list.packed_code.data();
-  pairs.end = block.begin + (block.num_touching + kBatch - 1) / kBatch * kBatch;
+  pairs.end = block.begin + (block.num_packed + kBatch - 1) / kBatch * kBatch;
   world_->kernels.pairs(pairs);
 }
 
+// Nobody can foretell which lane of which batch is set, so nothing here branches on it.
 template <int Dim>
 void Lane<Dim>::pack(Block& block, const std::uint8_t* masks) {
   PairList& list = lists_[Owned];
   std::uint8_t* known = list.mask.data() + block.begin / kBatch;
   double* springs = list.template springs_of_block<Dim>(block.begin);
-  alignas(64) double packed[kBlockPairs * L::kSprings];
-  std::int64_t old = 0, now = 0;
   const std::int64_t size = block.end - block.begin;
+  if (!block.is_packed) std::fill_n(known, size / kBatch, std::uint8_t{0xff});
+  const std::int64_t num_before = block.is_packed ? block.num_packed : size;
+  BlockSprings<Dim> before, after;
+  before.read(springs, num_before);
+  const std::int64_t none = before.clear(num_before);
+  const auto first = static_cast<std::size_t>(block.begin);
+  std::int64_t old = 0, now = 0;
   for (std::int64_t k = 0; k < size; ++k) {
-    const bool was = !block.is_packed || has_bit(known, k);
-    if (has_bit(masks, k)) {
-      const auto from = static_cast<std::size_t>(block.begin + k),
-                 to = static_cast<std::size_t>(block.begin + now);
-      list.packed_i[to] = list.i[from];
-      list.packed_j[to] = list.j[from];
-      list.packed_code[to] = list.code[from];
-      if (was)
-        copy_spring<Dim>(springs, block.is_packed ? old : k, packed, now);
-      else
-        clear_spring<Dim>(packed, now);
-      ++now;
-    }
+    const bool was = has_bit(known, k);
+    const auto from = first + static_cast<std::size_t>(k),
+               to = first + static_cast<std::size_t>(now);
+    list.packed_i[to] = list.i[from];
+    list.packed_j[to] = list.j[from];
+    list.packed_code[to] = list.code[from];
+    after.copy(now, before, was ? old : none);
+    now += has_bit(masks, k) ? 1 : 0;
     old += was ? 1 : 0;
   }
-  block.num_touching = now;
+  block.num_packed = now;
   for (; now % kBatch != 0; ++now) {
-    const auto to = static_cast<std::size_t>(block.begin + now);
+    const auto to = first + static_cast<std::size_t>(now);
     list.packed_i[to] = store_.waste();
     list.packed_j[to] = store_.waste() + 1;
     list.packed_code[to] = 0;
-    clear_spring<Dim>(packed, now);
+    after.clear(now);
   }
-  std::copy_n(packed, now * L::kSprings, springs);
+  after.write(springs, now);
   std::copy_n(masks, size / kBatch, known);
   block.is_packed = true;
 }
@@ -92,7 +132,7 @@ void Lane<Dim>::unpack_history() {
     if (!block.is_packed) continue;
     double* springs = lists_[Owned].template springs_of_block<Dim>(block.begin);
     const std::uint8_t* known = lists_[Owned].mask.data() + block.begin / kBatch;
-    std::int64_t a = block.num_touching;
+    std::int64_t a = block.num_packed;
     for (std::int64_t k = block.end - block.begin - 1; k >= 0; --k) {
       if (has_bit(known, k))
         copy_spring<Dim>(springs, --a, springs, k);

@@ -1,10 +1,15 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <type_traits>
 
 #include <barchan/core/layout.hpp>
 
 namespace barchan {
+
+/// Pairs that are worked on in one go: a block's rows stay in the first cache.
+inline constexpr std::int64_t kBlockPairs = 32 * kBatch;
 
 /// Candidate pairs in canonical order, with their law and history; whole batches, padded with waste
 /// rows.
@@ -37,9 +42,23 @@ struct PairList {
   void pad(std::int32_t waste) {
     while (size() % kBatch != 0) push(waste, waste + 1, 0);
   }
+  /// Gives memory back where pushing has left much more than is needed.
+  void trim() {
+    const auto fit = [](auto& column) {
+      if (column.capacity() < column.size() + column.size() / 4) return;
+      std::remove_reference_t<decltype(column)> fitting;
+      fitting.reserve(column.size() + column.size() / 8);
+      fitting.assign(column.begin(), column.end());
+      column.swap(fitting);
+    };
+    fit(i);
+    fit(j);
+    fit(code);
+  }
   template <int Dim>
   void reset_springs() {
-    spring.assign(i.size() * Layout<Dim>::kSprings, 0.0);
+    resize_with_room(spring, i.size() * Layout<Dim>::kSprings);
+    std::fill(spring.begin(), spring.end(), 0.0);
   }
   template <int Dim>
   [[nodiscard]] double* springs(std::int64_t k) {  ///< component c at [c·kBatch]

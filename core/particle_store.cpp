@@ -1,17 +1,20 @@
 #include <barchan/core/particle_store.hpp>
 
+#include <algorithm>
+
 namespace barchan {
 
 template <int Dim>
 void ParticleStore<Dim>::resize_for_ghosts() {
   const auto n = static_cast<std::size_t>(size());
-  motion.resize(n * L::kMotion);
-  spin.resize(n * L::kSpin);
-  force.assign(n * L::kForce, 0.0);
-  id.resize(n);
-  key.resize(n);
-  type.resize(n);
-  flags.resize(n);
+  resize_with_room(motion, n * L::kMotion);
+  resize_with_room(spin, n * L::kSpin);
+  resize_with_room(force, n * L::kForce);
+  std::fill(force.begin(), force.end(), 0.0);
+  resize_with_room(id, n);
+  resize_with_room(key, n);
+  resize_with_room(type, n);
+  resize_with_room(flags, n);
   for (std::int32_t w = waste(); w < waste() + 2; ++w) {
     std::fill_n(x(w), int{L::kMotion}, 0.0);
     std::fill_n(u(w), Dim == 2 ? 1 : 4, 0.0);

@@ -97,7 +97,7 @@ void narrow(benchmark::State& state, VectorWidth width) {
   const PairJob job = list.job(lane);
   if (lane.world().kernels.narrow == nullptr)
     return state.SkipWithError("this width has no narrow phase of its own");
-  for (auto _ : state) lane.world().kernels.narrow(job, list.masks.data());
+  for (auto _ : state) lane.world().kernels.narrow(job, 0.0, list.masks.data());
   const auto n = static_cast<double>(list.i.size());
   report(state, n,
          {8.125 + 64.0 * static_cast<double>(state.range(0)) / n, 8.125 + 64.0,

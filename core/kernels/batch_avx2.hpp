@@ -45,9 +45,11 @@ struct BatchAvx2 {
   }
 
   template <Damping D, bool OneLaw>
-  BARCHAN_INLINE LawConstants<Simd> constants(const Tables& t, const std::uint8_t* code) {
-    if constexpr (OneLaw) return t.first;
-    return gather_rows<D>(t.rows, code);
+  BARCHAN_INLINE Looked<Simd, OneLaw> constants(const Tables& t, const std::uint8_t* code) {
+    if constexpr (OneLaw)
+      return t.first;
+    else
+      return gather_rows<D>(t.rows, code);
   }
 
   BARCHAN_INLINE const double* at(const double* base, int stride, std::int32_t i) {

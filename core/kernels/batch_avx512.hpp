@@ -35,8 +35,15 @@ struct BatchAvx512 {
   }
 
   template <Damping D, bool OneLaw>
-  BARCHAN_INLINE LawConstants<Simd> constants(const Tables& t, const std::uint8_t* code) {
-    if constexpr (OneLaw) return t.column;
+  BARCHAN_INLINE Looked<Simd, OneLaw> constants(const Tables& t, const std::uint8_t* code) {
+    if constexpr (OneLaw)
+      return t.column;
+    else
+      return look_up<D>(t, code);
+  }
+
+  template <Damping D>
+  BARCHAN_INLINE LawConstants<Simd> look_up(const Tables& t, const std::uint8_t* code) {
     const __m512i lane =
         _mm512_cvtepu8_epi64(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(code)));
     if (t.size <= LawView::kColumn) {

@@ -6,6 +6,7 @@
 #include <barchan/core/kernels/narrow_loop.hpp>
 #include <barchan/core/kernels/pair_loop.hpp>
 #include <barchan/core/kernels/row_loop.hpp>
+#include <barchan/core/kernels/search_loop.hpp>
 
 namespace barchan {
 
@@ -56,9 +57,16 @@ NarrowKernel pick_narrow(int dim, VectorWidth width, bool periodic) {
   if (width == VectorWidth::Avx2) return kernels::pick_narrow_avx2(dim, periodic);
 #endif
   (void)width;
-  (void)dim;
-  (void)periodic;
-  return nullptr;  // pair by pair, a pair that does not touch costs no more than here
+  return kernels::pick_narrow_scalar(dim, periodic);
+}
+
+SearchKernel pick_search_kernel(int dim, VectorWidth width, bool periodic) {
+#ifdef BARCHAN_HAS_X86_KERNELS
+  if (width == VectorWidth::Avx512) return kernels::pick_search_avx512(dim, periodic);
+  if (width == VectorWidth::Avx2) return kernels::pick_search_avx2(dim, periodic);
+#endif
+  (void)width;
+  return kernels::pick_search_scalar(dim, periodic);
 }
 
 RowKernel pick_row_kernel(int dim, VectorWidth width, bool damped) {
@@ -78,9 +86,13 @@ KernelSet make_kernels(int dim, VectorWidth width, const LawTable& laws, bool ha
   if (laws.size() == 2 && !has_bonds) variant |= kernels::kOneLaw;
   // In 2D almost every candidate of a packing touches; in 3D about half do.
   const NarrowKernel narrow = dim == 3 ? pick_narrow(dim, width, box.any()) : nullptr;
-  return {
-      width,  pick_pairs(dim, width, variant),    pick_pairs(dim, width, variant | kernels::kKeep),
-      narrow, pick_row_kernel(dim, width, false), pick_row_kernel(dim, width, true)};
+  return {width,
+          pick_pairs(dim, width, variant),
+          pick_pairs(dim, width, variant | kernels::kKeep),
+          narrow,
+          pick_search_kernel(dim, width, box.any()),
+          pick_row_kernel(dim, width, false),
+          pick_row_kernel(dim, width, true)};
 }
 
 }  // namespace barchan

@@ -5,6 +5,7 @@
 
 #include <barchan/core/kernels/pair_job.hpp>
 #include <barchan/core/kernels/row_job.hpp>
+#include <barchan/core/kernels/search_job.hpp>
 #include <barchan/core/law_table.hpp>
 
 namespace barchan {
@@ -15,6 +16,7 @@ struct KernelSet {
   PairKernel pairs = nullptr;       ///< sums into rows
   PairKernel pairs_kept = nullptr;  ///< the same, and keeps every pair's force
   NarrowKernel narrow = nullptr;    ///< null where testing every candidate in `pairs` is cheaper
+  SearchKernel search = nullptr;
   RowKernel rows = nullptr;
   RowKernel rows_damped = nullptr;  ///< with local damping
 };

@@ -4,10 +4,10 @@
 
 namespace barchan::kernels {
 
-// Narrow phase alone: which candidates touch, a bit each, eight to a byte.
+// Narrow phase alone: which candidates touch or nearly do, a bit each, eight to a byte.
 
 template <class B, int Dim, bool Periodic>
-void narrow(const PairJob& given, std::uint8_t* masks) {
+void narrow(const PairJob& given, double margin, std::uint8_t* masks) {
   using S = typename B::Simd;
   const PairJob job = given;
   for (std::int64_t k = job.begin; k < job.end; k += 8) {
@@ -20,6 +20,7 @@ void narrow(const PairJob& given, std::uint8_t* masks) {
         dy = nearest_image<S>(dy, job.box.length[1], job.box.inverse[1]);
         if constexpr (Dim == 3) dz = nearest_image<S>(dz, job.box.length[2], job.box.inverse[2]);
       }
+      reach = reach + S::set(margin);
       auto d2 = dx * dx + dy * dy;
       if constexpr (Dim == 3) d2 = d2 + dz * dz;
       bits |= S::bits(S::less(d2, reach * reach)) << lane;
@@ -34,6 +35,7 @@ NarrowKernel pick_narrow(int dim, bool periodic) {
   return periodic ? &narrow<B, 3, true> : &narrow<B, 3, false>;
 }
 
+NarrowKernel pick_narrow_scalar(int dim, bool periodic);
 NarrowKernel pick_narrow_avx2(int dim, bool periodic);
 NarrowKernel pick_narrow_avx512(int dim, bool periodic);
 

@@ -34,8 +34,9 @@ struct PairJob {
 };
 
 using PairKernel = void (*)(const PairJob&);
-/// Writes one byte per batch: bit q is set where candidate q of the batch touches.
-using NarrowKernel = void (*)(const PairJob&, std::uint8_t* masks);
+/// Writes one byte per batch: bit q is set where candidate q of the batch touches, or misses it by
+/// less than `margin` [m].
+using NarrowKernel = void (*)(const PairJob&, double margin, std::uint8_t* masks);
 
 enum class VectorWidth { Scalar = 1, Avx2 = 4, Avx512 = 8 };
 

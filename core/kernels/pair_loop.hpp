@@ -35,7 +35,7 @@ void run_pairs(const PairJob& given) {
       if constexpr (Dim == 3)
         pair.dz = nearest_image<S>(pair.dz, job.box.length[2], job.box.inverse[2]);
     }
-    const auto constants = B::template constants<kDamped, kUniform>(tables, job.code + k);
+    const auto& constants = B::template constants<kDamped, kUniform>(tables, job.code + k);
     PairForce<S, Dim> force;
     B::template respond_with_spring<kDamped, Dim>(job, k, constants, pair, dt, force);
     if constexpr ((F & kKeep) != 0) B::keep(job, k, force);

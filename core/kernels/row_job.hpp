@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 
@@ -22,9 +23,18 @@ struct RowJob {
   double local_damping = 0.0;
   double most_speed =
       std::numeric_limits<double>::infinity();  ///< of a component of velocity [m/s]
-  bool* is_fast = nullptr;                      ///< set when a row is faster, or not finite
 };
 
-using RowKernel = void (*)(const RowJob&);
+/// How fast rows drifted.
+struct RowSpeeds {
+  double top = 0.0;        ///< upper bound [m/s]; 3D, where lists of near pairs rest on it
+  bool is_beyond = false;  ///< some component is beyond the job's most_speed, or no number
+  void add(const RowSpeeds& other) {
+    top = std::max(top, other.top);
+    is_beyond = is_beyond || other.is_beyond;
+  }
+};
+
+using RowKernel = RowSpeeds (*)(const RowJob&);
 
 }  // namespace barchan

@@ -29,6 +29,11 @@ struct Quad {
     return {m.a[0] > 0 ? r.a[0] : 0.0, m.a[1] > 0 ? r.a[1] : 0.0, m.a[2] > 0 ? r.a[2] : 0.0,
             m.a[3] > 0 ? r.a[3] : 0.0};
   }
+  static Real max(const Real& p, const Real& q) {
+    Real top;
+    for (int c = 0; c < 4; ++c) top.a[c] = p.a[c] > q.a[c] ? p.a[c] : q.a[c];
+    return top;
+  }
   /// 1 where |r| is more than the limit or no number.
   static Real beyond(const Real& r, const Real& limit) {
     Real is{};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 #include <barchan/core/kernels/row_job.hpp>
@@ -16,8 +17,9 @@ template <class Q, bool Damped>
 }
 
 template <class Q, int Dim, bool Damped>
-void advance_rows(const RowJob& job) {
+RowSpeeds advance_rows(const RowJob& job) {
   const double k = job.kick;
+  auto top = Q::set(0.0);
   const auto alpha = Q::set(job.local_damping);
   const auto zero = Q::set(0.0);
   const double most = job.most_speed, any = std::numeric_limits<double>::infinity();
@@ -50,6 +52,7 @@ void advance_rows(const RowJob& job) {
       const auto w = kicked<Q, Damped>(v, dv, alpha);
       fast = Q::either(fast, Q::beyond(w, limit));
       Q::store(x + 4, w);
+      top = Q::max(top, Q::abs(w));
       Q::store(x, Q::load(x) + drift * w);
       const auto s = Q::load(u);
       Q::store(u, kicked<Q, Damped>(s, Q::load(f + 4) * (im * twist), alpha));
@@ -57,7 +60,10 @@ void advance_rows(const RowJob& job) {
       Q::store(f + 4, zero);
     }
   }
-  if (job.is_fast != nullptr && Q::has_any(fast)) *job.is_fast = true;
+  alignas(32) double speed[4];
+  Q::store(speed, top);
+  return {std::sqrt(speed[0] * speed[0] + speed[1] * speed[1] + speed[2] * speed[2]),
+          Q::has_any(fast)};
 }
 
 template <class Q>

@@ -14,6 +14,7 @@ struct Avx2 {
 
   BARCHAN_INLINE Real set(double a) { return Real(_mm256_set1_pd(a)); }
   BARCHAN_INLINE Real sqrt(Real a) { return Real(_mm256_sqrt_pd(__m256d(a))); }
+  BARCHAN_INLINE Real max(Real a, Real b) { return Real(_mm256_max_pd(__m256d(a), __m256d(b))); }
   BARCHAN_INLINE Real abs(Real a) {
     return Real(_mm256_andnot_pd(_mm256_set1_pd(-0.0), __m256d(a)));
   }
@@ -31,6 +32,7 @@ struct Avx2 {
   BARCHAN_INLINE bool any(Mask m) { return _mm256_movemask_pd(m) != 0; }
   BARCHAN_INLINE unsigned bits(Mask m) { return static_cast<unsigned>(_mm256_movemask_pd(m)); }
 
+  BARCHAN_INLINE Real load_unaligned(const double* p) { return Real(_mm256_loadu_pd(p)); }
   BARCHAN_INLINE Real load(const double* p) { return Real(_mm256_load_pd(p)); }
   BARCHAN_INLINE void store(double* p, Real a) { _mm256_store_pd(p, __m256d(a)); }
 

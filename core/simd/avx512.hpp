@@ -31,6 +31,7 @@ struct Avx512 {
   BARCHAN_INLINE bool any(Mask m) { return m.bits != 0; }
   BARCHAN_INLINE unsigned bits(Mask m) { return m.bits; }
 
+  BARCHAN_INLINE Real load_unaligned(const double* p) { return Real(_mm512_loadu_pd(p)); }
   BARCHAN_INLINE Real load(const double* p) { return Real(_mm512_load_pd(p)); }
   BARCHAN_INLINE void store(double* p, Real a) { _mm512_store_pd(p, __m512d(a)); }
 };

@@ -11,6 +11,7 @@ struct Scalar {
   static constexpr int kWidth = 1;
 
   static Real set(double a) { return a; }
+  static Real load_unaligned(const double* p) { return *p; }
   static Real sqrt(Real a) { return __builtin_sqrt(a); }
   static Real abs(Real a) { return __builtin_fabs(a); }
   /// `magnitude` >= 0 with the sign of `sign`.

@@ -271,7 +271,7 @@ void expect_masks() {
       if (kernels.narrow == nullptr) continue;
       std::vector<std::uint8_t> masks(sample.list.i.size() / kBatch, 0xaa);
 
-      kernels.narrow(sample.job(laws, box), masks.data());
+      kernels.narrow(sample.job(laws, box), 0.0, masks.data());
 
       for (std::size_t k = 0; k < 200; ++k) {
         const double* f = sample.list.result.data() + k * Layout<Dim>::kForce;

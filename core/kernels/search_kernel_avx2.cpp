@@ -1,0 +1,10 @@
+#include <barchan/core/kernels/search_loop.hpp>
+#include <barchan/core/simd/avx2.hpp>
+
+namespace barchan::kernels {
+
+SearchKernel pick_search_avx2(int dim, bool periodic) {
+  return pick_search<simd::Avx2>(dim, periodic);
+}
+
+}  // namespace barchan::kernels

@@ -1,0 +1,10 @@
+#include <barchan/core/kernels/search_loop.hpp>
+#include <barchan/core/simd/scalar.hpp>
+
+namespace barchan::kernels {
+
+SearchKernel pick_search_scalar(int dim, bool periodic) {
+  return pick_search<simd::Scalar>(dim, periodic);
+}
+
+}  // namespace barchan::kernels
