@@ -48,7 +48,7 @@ class TaskOrder {
   TaskOrder& operator=(const TaskOrder&) = delete;
 
  private:
-  [[maybe_unused]] const void* graph_;
+  const void* graph_;
 };
 
 }  // namespace barchan
