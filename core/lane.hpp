@@ -54,6 +54,8 @@ struct Band {
   CellIndex ghost_cells;
   Planes planes;  ///< of the higher ones of the pairs across
   PairList across;
+  std::vector<PairBlock> blocks;  ///< of `across`
+  double travel = 0.0;            ///< bound of how far ghosts have come since the last rebuild [m]
 };
 
 /// Sums over a lane, added over lanes and ranks in any order.
@@ -131,9 +133,7 @@ class Lane {
 
   // ---- what a run that goes wrong says (lane_watch.cpp), between steps
   /// A particle moved farther than half the skin in the last step, or is not finite.
-  [[nodiscard]] bool is_fast() const {
-    return std::any_of(speeds_.begin(), speeds_.end(), [](auto s) { return s.is_beyond; });
-  }
+  [[nodiscard]] bool is_fast() const { return speeds_.is_beyond; }
   /// The fastest one; one that is not finite before all others. -1: there is none
   [[nodiscard]] std::int32_t fastest_row() const;
   /// What a row touches.
@@ -201,6 +201,7 @@ class Lane {
   /// Brings the springs of touching pairs back to their candidates' places. Cheap when nothing is
   /// packed.
   void unpack_history();
+  void unpack_history_across(Side side);
   [[nodiscard]] std::int64_t num_leaving() const {
     return std::count_if(goes_.begin(), goes_.end(), [](auto g) { return g == 1 || g == 2; });
   }
@@ -219,16 +220,12 @@ class Lane {
   [[nodiscard]] const World<Dim>& world() const { return *world_; }
 
  private:
-  struct Block {
+  struct Block : PairBlock {
     int list = 0;
-    std::int64_t begin = 0, end = 0;
-    std::int64_t num_packed = 0;
     std::int32_t prefetch_begin = 0,
                  prefetch_end = 0;  ///< rows that blocks before this one have not met
     std::int32_t final_row = 0;     ///< rows before this one are complete after the block
     bool has_extras = false;        ///< bonds, walls or external forces among them
-    bool is_packed = false;         ///< works on pairs that touch or nearly do, packed to its front
-    double packed_until = 0.0;      ///< travel of the lane up to which no other pair can touch [m]
   };
 
   void queue_links(const CheckpointShare& share,
@@ -250,13 +247,14 @@ class Lane {
   PairJob job(PairList& list) const;
   void run_block(Block& block);
   void prefetch(const Block& block) const;
-  void run_touching(Block& block, PairJob pairs);
+  void run_pairs(PairList& list, PairBlock& block, double travel);
+  void run_touching(PairList& list, PairBlock& block, PairJob& pairs, double travel);
   [[nodiscard]] double packing_margin() const;  ///< [m]
-  void pack(Block& block, const std::uint8_t* masks);
+  void pack(PairList& list, PairBlock& block, const std::uint8_t* masks);
   [[nodiscard]] bool packs() const {
     return world_->kernels.narrow != nullptr && world_->search == ContactSearchKind::Cells;
   }
-  void finish_rows(std::int32_t begin, std::int32_t end, bool has_extras, RowSpeeds& speeds);
+  void finish_rows(std::int32_t begin, std::int32_t end, bool has_extras);
   void replay(Rows rows);
   void compute_bonds(typename BondSet<Dim>::Group group);
   void unbind(std::int32_t bond);
@@ -264,7 +262,7 @@ class Lane {
   void research_across(Side side);
 
   void cut_blocks();
-  void prepare_packing();
+  void plan_prefetch();
   void redirect(PairList& list) const;
   [[nodiscard]] SearchRule search_rule() const;
   void find_owned();
@@ -300,7 +298,7 @@ class Lane {
   SearchSeconds search_seconds_;
   int slab_begin_ = 0, slab_end_ = 0;
   double last_distance2_ = 0.0;              ///< of the last step with the lists before these
-  std::array<RowSpeeds, 3> speeds_{};        ///< in this step: of either band, of all other rows
+  RowSpeeds speeds_;                         ///< of the rows of this step
   double step_travel_ = 0.0, travel_ = 0.0;  ///< bounds: of the last step, since the lists were cut
 
   /// A contact's spring while lists are made anew, by the rows that it had before.

@@ -73,6 +73,9 @@ void Lane<Dim>::cut_blocks() {
   blocks_.clear();
   travel_ = 0.0;
   const std::int32_t first = bands_[Left].rows.end, last = bands_[Right].rows.begin;
+  if (packs()) {
+    for (PairList& list : lists_) list.prepare_packing();
+  }
   for (int l = 0; l < kNumLists; ++l) {
     const PairList& list = lists_[static_cast<std::size_t>(l)];
     for (std::int64_t k = 0; k < list.size(); k += kBlockPairs) {
@@ -95,16 +98,12 @@ void Lane<Dim>::cut_blocks() {
     blocks_.emplace_back(), blocks_.back().list = Owned, blocks_.back().final_row = last;
   for (Block& block : blocks_) block.final_row = std::clamp(block.final_row, first, last);
   chunks_ = {0, static_cast<int>(blocks_.size())};
-  if (packs()) prepare_packing();
+  if (packs()) plan_prefetch();
 }
 
 template <int Dim>
-void Lane<Dim>::prepare_packing() {
-  PairList& list = lists_[Owned];
-  resize_with_room(list.packed_i, list.i.size());
-  resize_with_room(list.packed_j, list.i.size());
-  resize_with_room(list.packed_code, list.i.size());
-  list.mask.resize(list.i.size() / kBatch);
+void Lane<Dim>::plan_prefetch() {
+  const PairList& list = lists_[Owned];
   // While a block is worked on, the rows that the next one meets first are on their way to the
   // cache.
   std::int32_t met = 0, to_come = 0;
@@ -172,6 +171,13 @@ void Lane<Dim>::list_across(Side side) {
   band.across.trim();
   band.across.template reset_springs<Dim>();
   band.across.result.resize(band.returns ? band.across.i.size() * L::kForce : 0);
+  if (packs()) band.across.prepare_packing();
+  band.travel = 0.0;
+  band.blocks.clear();
+  for (std::int64_t k = 0; k < band.across.size(); k += kBlockPairs) {
+    PairBlock& block = band.blocks.emplace_back();
+    block.begin = k, block.end = std::min(k + kBlockPairs, band.across.size());
+  }
 }
 
 template <int Dim>

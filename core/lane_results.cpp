@@ -38,16 +38,14 @@ void Lane<Dim>::results(std::vector<double>& out) const {
   const Band& band = bands_[Left];
   const std::int32_t ghosts = store_.ghost_begin(Left);
   out.assign(1, 0.0);
-  for (std::int64_t k = 0; k < band.across.size(); ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    const double* f = band.across.result.data() + at * L::kForce;
-    if (is_zero<Dim>(f)) continue;
-    const std::int32_t ghost =
-        store_.is_owned(band.across.i[at]) ? band.across.j[at] : band.across.i[at];
+  const auto append = [&](std::size_t k, std::int32_t i, std::int32_t j) {
+    const double* f = band.across.result.data() + k * L::kForce;
+    if (is_zero<Dim>(f)) return;
     out[0] += 1.0;
     out.insert(out.end(), f, f + L::kForce);
-    out[out.size() - L::kForce + kNumberSlot] = ghost - ghosts;
-  }
+    out[out.size() - L::kForce + kNumberSlot] = (store_.is_owned(i) ? j : i) - ghosts;
+  };
+  for (const PairBlock& block : band.blocks) block.for_each_worked_on(band.across, append);
   bonds_.export_group(BondSet<Dim>::Left, out);
 }
 
@@ -78,7 +76,7 @@ void Lane<Dim>::finish_right_band(std::span<const double> results) {
   }
   if (band.ghosts_first) replay(band.rows);
   bonds_.import_group(BondSet<Dim>::Right, store_, f);
-  finish_rows(band.rows.begin, band.rows.end, true, speeds_[Right]);
+  finish_rows(band.rows.begin, band.rows.end, true);
 }
 
 template class Lane<2>;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <string>
 
@@ -44,9 +45,7 @@ PairJob Lane<Dim>::job(PairList& list) const {
 template <int Dim>
 void Lane<Dim>::begin_step(const StepFrame& frame) {
   frame_ = frame;
-  RowSpeeds all;
-  for (const RowSpeeds& speeds : speeds_) all.add(speeds);
-  step_travel_ = all.top * world_->dt;
+  step_travel_ = speeds_.top * world_->dt;
   travel_ += step_travel_;
   speeds_ = {};
   if (world_->search == ContactSearchKind::AllPairs) research_owned();
@@ -68,20 +67,10 @@ void Lane<Dim>::run_chunk(int chunk) {
 
 template <int Dim>
 void Lane<Dim>::run_block(Block& block) {
-  PairList& list = lists_[static_cast<std::size_t>(block.list)];
-  PairJob pairs = job(list);
-  pairs.begin = block.begin;
-  pairs.end = block.end;
-  if (!list.result.empty()) {
-    world_->kernels.pairs_kept(pairs);
-  } else if (packs()) {
-    prefetch(block);
-    run_touching(block, pairs);
-  } else {
-    world_->kernels.pairs(pairs);
-  }
+  prefetch(block);
+  run_pairs(lists_[static_cast<std::size_t>(block.list)], block, travel_);
   if (block.final_row > rows_done_) {
-    finish_rows(rows_done_, block.final_row, block.has_extras, speeds_.back());
+    finish_rows(rows_done_, block.final_row, block.has_extras);
     rows_done_ = block.final_row;
   }
 }
@@ -97,8 +86,7 @@ void Lane<Dim>::prefetch(const Block& block) const {
 }
 
 template <int Dim>
-void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extras,
-                            RowSpeeds& speeds) {
+void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extras) {
   if (has_extras || !store_.external.empty()) {
     bonds_.add_to_rows(store_, begin, end);
     const double dt = spring_step(frame_, world_->dt);
@@ -122,7 +110,7 @@ void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extra
               0.5 * world_->skin / world_->dt};
   const RowKernel advance =
       frame_.local_damping != 0.0 ? world_->kernels.rows_damped : world_->kernels.rows;
-  speeds.add(advance(rows));
+  speeds_.add(advance(rows));
 }
 
 template <int Dim>
@@ -138,11 +126,15 @@ void Lane<Dim>::unpack_halo(Side side, std::span<const std::byte> message) {
     std::memcpy(to, from, static_cast<std::size_t>(count) * sizeof(double));
     from += static_cast<std::size_t>(count) * sizeof(double);
   };
+  double top2 = 0.0;
   for (std::int32_t g = begin; g < begin + n; ++g) {
     take(store_.x(g), Dim);
     take(store_.v(g), Dim);
     take(store_.u(g), kSpins<Dim>);
+    const double* v = store_.v(g);
+    top2 = std::max(top2, v[0] * v[0] + v[1] * v[1] + (Dim == 3 ? v[2] * v[2] : 0.0));
   }
+  bands_[side].travel += std::sqrt(top2) * world_->dt;
 }
 
 template <int Dim>
@@ -173,29 +165,29 @@ void Lane<Dim>::finish_band(Side side) {
   // Bonds come before contacts here too, as in begin_step: a pair whose bond breaks is in contact
   // in the same step.
   if (!bonds_.empty()) compute_bonds(side == Left ? BondSet<Dim>::Left : BondSet<Dim>::Right);
-  (band.across.result.empty() ? world_->kernels.pairs
-                              : world_->kernels.pairs_kept)(job(band.across));
+  for (PairBlock& block : band.blocks) run_pairs(band.across, block, 0.5 * (travel_ + band.travel));
   if (band.ghosts_first) replay(band.rows);
-  finish_rows(band.rows.begin, band.rows.end, true, speeds_[side]);
+  finish_rows(band.rows.begin, band.rows.end, true);
 }
 
 template <int Dim>
 void Lane<Dim>::replay(Rows rows) {
-  for (const ListName name : {HeldLow, HeldHigh}) {
-    const PairList& list = lists_[name];
-    for (std::int64_t k = 0; k < list.size(); ++k) {
-      const auto at = static_cast<std::size_t>(k);
-      const double* f = list.result.data() + at * L::kForce;
-      if (list.i[at] >= rows.begin && list.i[at] < rows.end) {
-        double* row = store_.f(list.i[at]);
+  const auto is_in = [rows](std::int32_t row) { return row >= rows.begin && row < rows.end; };
+  for (const Block& block : blocks_) {
+    const PairList& list = lists_[static_cast<std::size_t>(block.list)];
+    if (list.result.empty()) continue;
+    block.for_each_worked_on(list, [&](std::size_t k, std::int32_t i, std::int32_t j) {
+      const double* f = list.result.data() + k * L::kForce;
+      if (is_in(i)) {
+        double* row = store_.f(i);
         for (int c = 0; c < L::kForce; ++c) row[c] += f[c];
       }
-      if (list.j[at] >= rows.begin && list.j[at] < rows.end) {
-        double* row = store_.f(list.j[at]);
+      if (is_in(j)) {
+        double* row = store_.f(j);
         for (int c = 0; c < Dim; ++c) row[c] -= f[c];
         for (int c = L::kTorque; c < L::kTorque + kSpins<Dim>; ++c) row[c] += f[c];
       }
-    }
+    });
   }
 }
 
@@ -204,10 +196,13 @@ void Lane<Dim>::compute_bonds(typename BondSet<Dim>::Group group) {
   const auto broken = bonds_.compute(group, store_, world_->bond_laws, world_->grid.box(),
                                      spring_step(frame_, world_->dt));
   for (const std::int32_t bond : broken) unbind(bond);
-  if (!broken.empty()) {
-    list_bonded();
-    unpack_history();  // laws have changed
-  }
+  if (broken.empty()) return;
+  list_bonded();
+  // Laws have changed. Bonds across a cut are pairs across it; results of other lists must stay.
+  if (group == BondSet<Dim>::Owned)
+    unpack_history();
+  else
+    unpack_history_across(group == BondSet<Dim>::Left ? Left : Right);
 }
 
 template <int Dim>

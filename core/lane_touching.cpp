@@ -3,7 +3,7 @@
 
 #include <barchan/core/lane.hpp>
 
-// Where many candidates do not touch, a block of the owned list works on those alone that touch or
+// Where many candidates do not touch, a block works on those alone that touch or
 // are about to: a narrow phase tells which they are, and pairs, laws and springs are packed to the
 // front of the block. They serve until particles may have come far enough for another pair to
 // touch; one that parted meanwhile has no force and loses its spring, as it would in the whole
@@ -60,6 +60,21 @@ bool has_bit(const std::uint8_t* masks, std::int64_t k) {
   return (masks[k / 8] >> (k % 8) & 1) != 0;
 }
 
+template <int Dim>
+void unpack(PairList& list, PairBlock& block) {
+  if (!block.is_packed) return;
+  double* springs = list.template springs_of_block<Dim>(block.begin);
+  const std::uint8_t* known = list.mask.data() + block.begin / kBatch;
+  std::int64_t a = block.num_packed;
+  for (std::int64_t k = block.end - block.begin - 1; k >= 0; --k) {
+    if (has_bit(known, k))
+      copy_spring<Dim>(springs, --a, springs, k);
+    else
+      clear_spring<Dim>(springs, k);
+  }
+  block.is_packed = false;
+}
+
 }  // namespace
 
 // A narrow margin asks for the narrow phase often, a wide one lets more pairs in that do not touch.
@@ -71,27 +86,36 @@ double Lane<Dim>::packing_margin() const {
 }
 
 template <int Dim>
-void Lane<Dim>::run_touching(Block& block, PairJob pairs) {
-  if (!block.is_packed || travel_ > block.packed_until) {
+void Lane<Dim>::run_pairs(PairList& list, PairBlock& block, double travel) {
+  PairJob pairs = job(list);
+  pairs.begin = block.begin;
+  pairs.end = block.end;
+  if (packs()) run_touching(list, block, pairs, travel);
+  (list.result.empty() ? world_->kernels.pairs : world_->kernels.pairs_kept)(pairs);
+}
+
+template <int Dim>
+void Lane<Dim>::run_touching(PairList& list, PairBlock& block, PairJob& pairs, double travel) {
+  if (!block.is_packed || travel > block.packed_until) {
     std::array<std::uint8_t, kBlockPairs / kBatch> masks;
     const double margin = packing_margin();
     world_->kernels.narrow(pairs, margin, masks.data());
-    pack(block, masks.data());
+    pack(list, block, masks.data());
     // Both of a pair travel; a little less, for the rounding of positions and sums.
-    block.packed_until = travel_ + 0.499 * margin;
+    block.packed_until = travel + 0.499 * margin;
   }
-  const PairList& list = lists_[Owned];
-  pairs.i = pairs.row_i = list.packed_i.data();
-  pairs.j = pairs.row_j = list.packed_j.data();
+  const bool is_redirected = !list.row_i.empty();
+  pairs.i = list.packed_i.data();
+  pairs.j = list.packed_j.data();
+  pairs.row_i = is_redirected ? list.packed_row_i.data() : pairs.i;
+  pairs.row_j = is_redirected ? list.packed_row_j.data() : pairs.j;
   pairs.code = list.packed_code.data();
   pairs.end = block.begin + (block.num_packed + kBatch - 1) / kBatch * kBatch;
-  world_->kernels.pairs(pairs);
 }
 
 // Nobody can foretell which lane of which batch is set, so nothing here branches on it.
 template <int Dim>
-void Lane<Dim>::pack(Block& block, const std::uint8_t* masks) {
-  PairList& list = lists_[Owned];
+void Lane<Dim>::pack(PairList& list, PairBlock& block, const std::uint8_t* masks) {
   std::uint8_t* known = list.mask.data() + block.begin / kBatch;
   double* springs = list.template springs_of_block<Dim>(block.begin);
   const std::int64_t size = block.end - block.begin;
@@ -101,6 +125,7 @@ void Lane<Dim>::pack(Block& block, const std::uint8_t* masks) {
   before.read(springs, num_before);
   const std::int64_t none = before.clear(num_before);
   const auto first = static_cast<std::size_t>(block.begin);
+  const bool is_redirected = !list.row_i.empty();
   std::int64_t old = 0, now = 0;
   for (std::int64_t k = 0; k < size; ++k) {
     const bool was = has_bit(known, k);
@@ -109,6 +134,10 @@ void Lane<Dim>::pack(Block& block, const std::uint8_t* masks) {
     list.packed_i[to] = list.i[from];
     list.packed_j[to] = list.j[from];
     list.packed_code[to] = list.code[from];
+    if (is_redirected) {
+      list.packed_row_i[to] = list.row_i[from];
+      list.packed_row_j[to] = list.row_j[from];
+    }
     after.copy(now, before, was ? old : none);
     now += has_bit(masks, k) ? 1 : 0;
     old += was ? 1 : 0;
@@ -119,6 +148,10 @@ void Lane<Dim>::pack(Block& block, const std::uint8_t* masks) {
     list.packed_i[to] = store_.waste();
     list.packed_j[to] = store_.waste() + 1;
     list.packed_code[to] = 0;
+    if (is_redirected) {
+      list.packed_row_i[to] = store_.waste();
+      list.packed_row_j[to] = store_.waste() + 1;
+    }
     after.clear(now);
   }
   after.write(springs, now);
@@ -128,19 +161,13 @@ void Lane<Dim>::pack(Block& block, const std::uint8_t* masks) {
 
 template <int Dim>
 void Lane<Dim>::unpack_history() {
-  for (Block& block : blocks_) {
-    if (!block.is_packed) continue;
-    double* springs = lists_[Owned].template springs_of_block<Dim>(block.begin);
-    const std::uint8_t* known = lists_[Owned].mask.data() + block.begin / kBatch;
-    std::int64_t a = block.num_packed;
-    for (std::int64_t k = block.end - block.begin - 1; k >= 0; --k) {
-      if (has_bit(known, k))
-        copy_spring<Dim>(springs, --a, springs, k);
-      else
-        clear_spring<Dim>(springs, k);
-    }
-    block.is_packed = false;
-  }
+  for (Block& block : blocks_) unpack<Dim>(lists_[static_cast<std::size_t>(block.list)], block);
+  for (const Side side : {Left, Right}) unpack_history_across(side);
+}
+
+template <int Dim>
+void Lane<Dim>::unpack_history_across(Side side) {
+  for (PairBlock& block : bands_[side].blocks) unpack<Dim>(bands_[side].across, block);
 }
 
 template class Lane<2>;

@@ -20,9 +20,9 @@ struct PairList {
   AlignedVector<std::int32_t> row_i, row_j;  ///< where forces go, if not to i and j
   AlignedVector<double> result;              ///< a force record each, if kept
 
-  // Touching pairs of each block, packed to its front (lane_touching.cpp); empty where every
-  // candidate is worked on.
-  AlignedVector<std::int32_t> packed_i, packed_j;
+  // Pairs of each block that touch or nearly do, packed to its front (lane_touching.cpp); empty
+  // where every candidate is worked on.
+  AlignedVector<std::int32_t> packed_i, packed_j, packed_row_i, packed_row_j;
   AlignedVector<std::uint8_t> packed_code, mask;
 
   [[nodiscard]] std::int64_t size() const { return static_cast<std::int64_t>(i.size()); }
@@ -37,6 +37,12 @@ struct PairList {
     i.push_back(a);
     j.push_back(b);
     code.push_back(law);
+  }
+  void prepare_packing() {
+    for (auto* column : {&packed_i, &packed_j}) resize_with_room(*column, i.size());
+    for (auto* column : {&packed_row_i, &packed_row_j}) resize_with_room(*column, row_i.size());
+    resize_with_room(packed_code, i.size());
+    resize_with_room(mask, i.size() / kBatch);
   }
   /// Fills the last batch; the null law and radius zero make the padding harmless.
   void pad(std::int32_t waste) {
@@ -80,9 +86,29 @@ struct PairList {
   }
   [[nodiscard]] std::size_t bytes() const {
     return 4 * (i.capacity() + j.capacity() + row_i.capacity() + row_j.capacity() +
-                packed_i.capacity() + packed_j.capacity()) +
+                packed_i.capacity() + packed_j.capacity() + packed_row_i.capacity() +
+                packed_row_j.capacity()) +
            code.capacity() + packed_code.capacity() + mask.capacity() +
            8 * (spring.capacity() + result.capacity());
+  }
+};
+
+/// Pairs [begin, end) of a list, and those of them that are worked on.
+struct PairBlock {
+  std::int64_t begin = 0, end = 0;
+  std::int64_t num_packed = 0;
+  bool is_packed = false;  ///< works on pairs that touch or nearly do, packed to its front
+  double packed_until =
+      0.0;  ///< mean travel of the two of a pair up to which no other can touch [m]
+
+  /// Calls f(k, i, j) for the pairs that have a result.
+  template <class F>
+  void for_each_worked_on(const PairList& list, F&& f) const {
+    const auto& first = is_packed ? list.packed_i : list.i;
+    const auto& second = is_packed ? list.packed_j : list.j;
+    const std::int64_t last = is_packed ? begin + num_packed : end;
+    for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(last); ++k)
+      f(k, first[k], second[k]);
   }
 };
 
