@@ -4,7 +4,7 @@
 #
 # usage: tests/sanitizers/asan_ubsan.sh [FILTER]     FILTER: of GoogleTest, for a part
 #
-# Not in the suite, since it builds the tree once more: some five minutes on two cores. Suppressed are leaks of Open MPI alone: lsan.supp.
+# Not in the suite, since it builds the tree once more: more than six minutes on two cores with other work. Suppressed are leaks of Open MPI alone: lsan.supp.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 . "$here/common.sh"

@@ -7,10 +7,10 @@
 # Debian's oneTBB and Open MPI are built without ThreadSanitizer. What they do by themselves is not judged
 # (ignore_noninstrumented_modules, tsan.supp); the orders that oneTBB makes between tasks are told by tell_release and
 # tell_acquire in tasks/thread_order.hpp, edge by edge, so that two tasks without an edge between them are still a race.
-# Tried with races planted for it: a counter that the tasks of all lanes share, in a step and in a rebuild, and a chunk
-# that writes what belongs to the next lane, are each reported; without them nothing is.
+# Tried with races planted for it: a counter that the tasks of all lanes share in a rebuild, and a chunk of a step
+# that writes what belongs to the next lane, were each reported; without them nothing was.
 #
-# Not in the suite, since it builds the tree once more: some five minutes on two cores, and as long again to run.
+# Not in the suite, since it builds the tree once more: more than six minutes on two cores with other work, and three to run.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 . "$here/common.sh"
