@@ -33,7 +33,7 @@ DECKS = {
 def choices_of(command, option):
     """What the command's help says the option takes."""
     text = subprocess.run([command, "run", "--help"], capture_output=True, text=True, check=True).stdout
-    found = re.search(rf"--{option} TEXT:{{([^}}]*)}}", text)
+    found = re.search(rf"--{option} TEXT:{{([^}}]*)}}", text) or re.search(rf"--{option} NAME[^:]*: ([a-z, -]*), or ", text)
     if not found:
         sys.exit(f"'{command} run --help' does not list the choices of --{option}")
     return [name.strip() for name in found.group(1).split(",")]
