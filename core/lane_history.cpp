@@ -84,20 +84,23 @@ template <int Dim>
 typename Lane<Dim>::Slot Lane<Dim>::slot(std::int32_t a, std::int32_t b) {
   if (store_.is_owned(a) && store_.is_owned(b)) {
     const std::int32_t low = std::min(a, b), high = std::max(a, b);
-    const std::int64_t begin = row_begin_[static_cast<std::size_t>(low)];
-    for (PairList& list : lists_) {
-      for (std::int64_t k = begin; k < list.size() && list.i[static_cast<std::size_t>(k)] == low;
-           ++k) {
-        if (list.j[static_cast<std::size_t>(k)] == high) return {&list, k};
-      }
+    const ListName name = list_of(low, high);
+    PairList& list = lists_[name];
+    if (name == HeldLow || name == HeldHigh) return find_pair(list, {low, high});
+    for (std::int64_t k = row_begin_[static_cast<std::size_t>(low)];
+         k < list.size() && list.i[static_cast<std::size_t>(k)] == low; ++k) {
+      if (list.j[static_cast<std::size_t>(k)] == high) return {&list, k};
     }
     return {};
   }
   const std::int32_t ghost = store_.is_owned(a) ? b : a, own = store_.is_owned(a) ? a : b;
   Band& band = bands_[ghost < store_.ghost_begin(Right) ? Left : Right];
-  const std::pair<std::int32_t, std::int32_t> wanted =
-      band.ghosts_first ? std::pair(ghost, own) : std::pair(own, ghost);
-  PairList& list = band.across;
+  return find_pair(band.across, band.ghosts_first ? std::pair(ghost, own) : std::pair(own, ghost));
+}
+
+template <int Dim>
+typename Lane<Dim>::Slot Lane<Dim>::find_pair(PairList& list,
+                                              std::pair<std::int32_t, std::int32_t> wanted) const {
   std::int64_t low = 0, high = list.size();
   while (low < high && list.i[static_cast<std::size_t>(high - 1)] == store_.waste()) --high;
   while (low < high) {

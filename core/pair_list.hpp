@@ -38,6 +38,16 @@ struct PairList {
     j.push_back(b);
     code.push_back(law);
   }
+  void copy(std::int64_t from, std::int64_t to) {
+    const auto k = static_cast<std::size_t>(from), at = static_cast<std::size_t>(to);
+    i[at] = i[k];
+    j[at] = j[k];
+    code[at] = code[k];
+  }
+  void shorten(std::int64_t n) {
+    for (auto* column : {&i, &j}) column->resize(static_cast<std::size_t>(n));
+    code.resize(static_cast<std::size_t>(n));
+  }
   void prepare_packing() {
     for (auto* column : {&packed_i, &packed_j}) resize_with_room(*column, i.size());
     for (auto* column : {&packed_row_i, &packed_row_j}) resize_with_room(*column, row_i.size());
