@@ -56,7 +56,7 @@ struct Band {
   PairList across;
   std::vector<PairBlock> blocks;        ///< of `across`
   std::vector<PairBlock> inner_blocks;  ///< of the pairs within the band that wait for its ghosts
-  double travel = 0.0;            ///< bound of how far ghosts have come since the last rebuild [m]
+  double travel = 0.0;  ///< bound of how far ghosts have come since the last rebuild [m]
 };
 
 /// Sums over a lane, added over lanes and ranks in any order.
@@ -237,8 +237,8 @@ class Lane {
   /// Largest squared displacement since the last rebuild that a step was computed with: before its
   /// drift.
   [[nodiscard]] double distance2_of_last_step() const;
-  [[nodiscard]] int direction_of(int slab) const;  ///< 0 here, 1 left, 2 right
-  static constexpr std::int8_t kGone = 3;          ///< as a direction: out of the domain
+  [[nodiscard]] int direction_of(std::int64_t key) const;  ///< 0 here, 1 left, 2 right
+  static constexpr std::int8_t kGone = 3;                  ///< as a direction: out of the domain
   [[nodiscard]] bool is_removed(std::int32_t row) const {
     return !removed_.empty() && std::binary_search(removed_.begin(), removed_.end(),
                                                    store_.id[static_cast<std::size_t>(row)]);
@@ -286,8 +286,13 @@ class Lane {
   Slot find_pair(PairList& list, std::pair<std::int32_t, std::int32_t> wanted) const;
   std::int32_t find_near(std::int32_t row, std::int64_t id) const;
   void place(std::int32_t a, std::int32_t b, const double* spring_a_to_b);
-  void collect_loose(std::array<Migration<Dim>, 2>& leaving, const std::vector<std::int8_t>& goes,
-                     const std::vector<std::int32_t>& number);
+  /// @param number  of every row that leaves, its place among the leavers
+  void collect_history(std::array<Migration<Dim>, 2>& leaving,
+                       std::span<const std::int32_t> number);
+  void keep_staying(const PairList& list, const PairBlock& block,
+                    std::array<Migration<Dim>, 2>& leaving, std::span<const std::int32_t> number);
+  void loosen(const PairList& list, std::int64_t k, std::array<std::int32_t, 2> ends, bool counts,
+              std::array<Migration<Dim>, 2>& leaving, std::span<const std::int32_t> number);
 
   World<Dim>* world_;
   StepFrame frame_;
@@ -319,7 +324,11 @@ class Lane {
   };
   std::vector<KeptContact> kept_;
 
-  static void keep(const PairList& list, std::int64_t k, std::vector<KeptContact>& to);
+  static KeptContact kept(const PairList& list, std::int64_t k, std::int32_t i, std::int32_t j) {
+    KeptContact c{i, j, {}};
+    for (int q = 0; q < L::kSprings; ++q) c.spring[q] = list.springs<Dim>(k)[q * kBatch];
+    return c;
+  }
   static void keep_springs(const PairList& list, std::vector<KeptContact>& to);
   /// Springs of pairs that are in both.
   void put_springs(PairList& list, std::span<const KeptContact> kept) const;
