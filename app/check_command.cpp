@@ -114,7 +114,7 @@ double engine_bytes(const LoadedDeck& loaded) {
   model.time.allow_unstable = true;
   RunOptions options;
   options.threads = 1;
-  const Simulation simulation(model, loaded.particles, MPI_COMM_SELF, options);
+  const Simulation simulation(model, loaded.particles, Communicator::self(), options);
   return static_cast<double>(simulation.memory_bytes());
 }
 

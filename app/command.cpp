@@ -1,7 +1,6 @@
 #include <barchan/app/command.hpp>
 
 #include <cstdio>
-#include <cstdlib>
 #include <exception>
 #include <optional>
 
@@ -12,15 +11,6 @@
 
 namespace barchan::app {
 namespace {
-
-/// Under mpirun or another starter of ranks: MPI must be joined even for a line of help, so that
-/// one rank prints.
-bool has_launcher() {
-  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK", "PMI_RANK"}) {
-    if (std::getenv(name) != nullptr) return true;
-  }
-  return false;
-}
 
 void say(const CommandLine& line, bool is_root) {
   if (!is_root) return;
@@ -40,7 +30,8 @@ int run_barchan(int argc, char** argv) {
   const CommandLine line = parse_command_line(argc, argv);
   const bool is_local = line.kind != CommandKind::Run && line.kind != CommandKind::Check &&
                         line.kind != CommandKind::Probe;
-  if (is_local && !has_launcher()) {
+  // Among other ranks MPI must be joined even for a line of help, so that one of them prints.
+  if (is_local && !is_started_as_rank()) {
     if (line.kind != CommandKind::Text) return on_root(nullptr, line);
     say(line, true);
     return line.status;

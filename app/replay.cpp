@@ -18,7 +18,7 @@ RecordedRun record_run(const Communicator& world, const LoadedDeck& loaded,
   options.exchange = arguments.record;
   RecordedRun recorded;
   {
-    Simulation simulation(loaded.deck.model, loaded.particles, world.handle(), options);
+    Simulation simulation(loaded.deck.model, loaded.particles, world.duplicate(), options);
     try {
       simulation.run(loaded.deck.model.time.num_steps);
     } catch (const std::exception& e) {

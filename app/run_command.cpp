@@ -133,13 +133,13 @@ void save_last(Simulation& simulation, RunResults& results, Progress& progress, 
 Simulation begin(const Communicator& world, const RunOptions& options, const LoadedDeck& loaded,
                  const RestartPoint& from) {
   const Model& model = loaded.deck.model;
-  if (!from.checkpoint) return {model, loaded.particles, world.handle(), options};
+  if (!from.checkpoint) return {model, loaded.particles, world.duplicate(), options};
   if (from.checkpoint->step > model.time.num_steps) {
     throw InputError(fmt::format("the checkpoint is of step {}, and the run has {} steps",
                                  from.checkpoint->step, model.time.num_steps),
                      "give more --steps or an earlier checkpoint");
   }
-  return Simulation::restore(model, from.checkpoint->path, world.handle(), options);
+  return Simulation::restore(model, from.checkpoint->path, world.duplicate(), options);
 }
 
 }  // namespace

@@ -20,7 +20,9 @@ class Tape;
 class Communicator {
  public:
   /// Duplicates `caller`. Collective. Errors: MpiError; RunError when MPI is not running.
-  explicit Communicator(MPI_Comm caller);
+  /// Implicit, so that callers of the library hand over their own communicator as it is.
+  Communicator(MPI_Comm caller);
+  static Communicator self() { return Communicator(MPI_COMM_SELF); }  ///< this rank alone
   static Communicator world() { return Communicator(MPI_COMM_WORLD); }
   ~Communicator();
   Communicator(Communicator&& other) noexcept;

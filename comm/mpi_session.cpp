@@ -1,6 +1,7 @@
 #include <barchan/comm/mpi_session.hpp>
 
 #include <chrono>
+#include <cstdlib>
 #include <exception>
 #include <thread>
 
@@ -63,6 +64,13 @@ std::string mpi_thread_level() {
   if (level == MPI_THREAD_MULTIPLE) return "multiple";
   if (level == MPI_THREAD_SERIALIZED) return "serialized";
   return level == MPI_THREAD_FUNNELED ? "funneled" : "single";
+}
+
+bool is_started_as_rank() {
+  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK", "PMI_RANK"}) {
+    if (std::getenv(name) != nullptr) return true;
+  }
+  return false;
 }
 
 bool is_mpi_initialized() {

@@ -9,7 +9,7 @@ namespace barchan {
 /// 2^-288 to 2^320.
 ///
 /// Every digit is an int64, so partial sums of up to 2^30 terms may be added digit by digit in any
-/// order, on any rank (an integer MPI_SUM). Bits below 2^-288 are cut off term by term. Non-finite
+/// order, on any rank (a sum of integers). Bits below 2^-288 are cut off term by term. Non-finite
 /// terms make the sum NaN.
 class ExactSum {
  public:

@@ -34,8 +34,8 @@ class Simulation::Engine {
 
   virtual void save_checkpoint() = 0;
 
-  Engine(const Model& model, MPI_Comm comm, RunOptions options)
-      : model_(model), options_(std::move(options)), communicator_(comm) {
+  Engine(const Model& model, Communicator communicator, RunOptions options)
+      : model_(model), options_(std::move(options)), communicator_(std::move(communicator)) {
     communicator_.set_tape(options_.tape);
   }
 
@@ -65,10 +65,10 @@ struct WorldScale {
 template <int Dim>
 class Simulation::EngineOf final : public Simulation::Engine {
  public:
-  EngineOf(const Model& model, const ParticleSet& particles, MPI_Comm comm,
+  EngineOf(const Model& model, const ParticleSet& particles, Communicator communicator,
            const RunOptions& options);
 
-  EngineOf(const Model& model, const std::string& checkpoint, MPI_Comm comm,
+  EngineOf(const Model& model, const std::string& checkpoint, Communicator communicator,
            const RunOptions& options);
 
   ~EngineOf() override;
@@ -143,6 +143,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   bool is_in_step_ = false;     ///< or one was not ended
   double chunk_seconds_ = 0.0;  ///< of chunks when they were last sized
   std::int64_t chunks_sized_at_ = 0;
+  std::int64_t loop_steps_ = 0;
   double loop_seconds_ = 0.0, rebuild_seconds_ = 0.0, checkpoint_seconds_ = 0.0;
 };
 

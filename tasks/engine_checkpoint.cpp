@@ -95,8 +95,8 @@ CheckpointState Simulation::EngineOf<Dim>::state() {
 
 template <int Dim>
 Simulation::EngineOf<Dim>::EngineOf(const Model& model, const std::string& checkpoint,
-                                    MPI_Comm comm, const RunOptions& options)
-    : Engine(model, comm, options) {
+                                    Communicator communicator, const RunOptions& options)
+    : Engine(model, std::move(communicator), options) {
   const OpenCheckpoint open = open_checkpoint(communicator_, checkpoint, model_);
   const CheckpointState& s = open.state;
   make_world({s.skin, s.reach, s.start_particles, s.has_bonds});

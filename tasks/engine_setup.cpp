@@ -14,9 +14,9 @@
 namespace barchan {
 
 template <int Dim>
-Simulation::EngineOf<Dim>::EngineOf(const Model& model, const ParticleSet& particles, MPI_Comm comm,
-                                    const RunOptions& options)
-    : Engine(model, comm, options) {
+Simulation::EngineOf<Dim>::EngineOf(const Model& model, const ParticleSet& particles,
+                                    Communicator communicator, const RunOptions& options)
+    : Engine(model, std::move(communicator), options) {
   check_particles(model_, particles);
   check_time_step(model_, step_limits(model_, particles));
   num_particles_ = static_cast<std::int64_t>(particles.particles.size());

@@ -8,9 +8,9 @@
 namespace barchan {
 
 /// A thread that lets messages advance and does nothing else. It calls `drive` again and again
-/// under `guard`, which everybody else holds in MPI while it is working (MPI_THREAD_SERIALIZED).
+/// under `guard`, which everybody else holds while in the exchange: one thread at a time.
 ///
-///     resume() → drive, drive, …, → pause() returns: it is out of MPI, and stays out
+///     resume() → drive, drive, …, → pause() returns: it is out of the exchange, and stays out
 class ProgressThread {
  public:
   /// @param drive  must not throw what the run should hear of: workers meet the same error

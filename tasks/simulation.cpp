@@ -42,12 +42,12 @@ std::vector<std::string> exchange_choices() {
   return names;
 }
 
-Simulation::Simulation(const Model& model, const ParticleSet& particles, MPI_Comm communicator,
+Simulation::Simulation(const Model& model, const ParticleSet& particles, Communicator communicator,
                        const RunOptions& options) {
   if (model.dimension == 2)
-    engine_ = std::make_unique<EngineOf<2>>(model, particles, communicator, options);
+    engine_ = std::make_unique<EngineOf<2>>(model, particles, std::move(communicator), options);
   else if (model.dimension == 3)
-    engine_ = std::make_unique<EngineOf<3>>(model, particles, communicator, options);
+    engine_ = std::make_unique<EngineOf<3>>(model, particles, std::move(communicator), options);
   else
     throw InputError("dimension " + std::to_string(model.dimension), "2 or 3");
 }
@@ -55,11 +55,13 @@ Simulation::Simulation(const Model& model, const ParticleSet& particles, MPI_Com
 Simulation::Simulation(std::unique_ptr<Engine> engine) : engine_(std::move(engine)) {}
 
 Simulation Simulation::restore(const Model& model, const std::string& checkpoint,
-                               MPI_Comm communicator, const RunOptions& options) {
+                               Communicator communicator, const RunOptions& options) {
   if (model.dimension == 2)
-    return Simulation(std::make_unique<EngineOf<2>>(model, checkpoint, communicator, options));
+    return Simulation(
+        std::make_unique<EngineOf<2>>(model, checkpoint, std::move(communicator), options));
   if (model.dimension == 3)
-    return Simulation(std::make_unique<EngineOf<3>>(model, checkpoint, communicator, options));
+    return Simulation(
+        std::make_unique<EngineOf<3>>(model, checkpoint, std::move(communicator), options));
   throw InputError("dimension " + std::to_string(model.dimension), "2 or 3");
 }
 

@@ -29,13 +29,14 @@ struct OwnedParticle {
 /// One kind of communication of this rank [s].
 struct CommunicationTime {
   double in_flight = 0.0;  ///< under way
-  double exposed =
-      0.0;  ///< of that, not spent on particles: waiting, or inside MPI; a worker's, averaged
+  double exposed = 0.0;    ///< of that, not spent on particles: waiting, or inside the exchange; a
+                           ///< worker's, averaged
 };
 
 /// Where the time of a run went, this rank; what workers do side by side is averaged over them.
 struct Timings {
   double loop_seconds = 0.0;             ///< inside run()
+  std::int64_t steps = 0;                ///< of this loop; what came before a restart is not in it
   std::map<std::string, double> phases;  ///< name → seconds; the rest of the loop is "other"
   std::map<std::string, CommunicationTime> communication;  ///< "halo", "rebuild", "reductions"
   double in_flight_seconds = 0.0;                          ///< all kinds
@@ -58,22 +59,23 @@ struct LeftDomain {
 
 /// A DEM simulation on all ranks of a communicator.
 ///
-///     Simulation sim(model, particles, MPI_COMM_WORLD, options);
+///     Simulation sim(model, particles, Communicator::world(), options);
 ///     while (sim.time() < end) {
 ///       sim.apply_forces([](const OwnedParticle& p) { return Vec3(-0.1 * p.velocity); });
 ///       sim.run(10);
 ///     }
 ///
 /// The state is the same to the bit for any number of ranks, threads and any exchange. The library
-/// works on a duplicate of the communicator, prints nothing and never ends the program.
+/// works on a communicator of its own, prints nothing and never ends the program.
 /// Construction, run, measure, digest, destruction and what is said to be are collective; the rest
 /// is local. One thread at a time.
 class Simulation {
  public:
-  /// @param particles  all of them, the same on every rank
+  /// @param particles     all of them, the same on every rank
+  /// @param communicator  the ranks that own the strips; a caller's own handle is duplicated
   /// Errors: InputError, the same on every rank, for a model that cannot run (unstable step, too
   /// many ranks for the domain, gross overlaps, unknown exchange or vector width).
-  Simulation(const Model& model, const ParticleSet& particles, MPI_Comm communicator,
+  Simulation(const Model& model, const ParticleSet& particles, Communicator communicator,
              const RunOptions& options = {});
   /// Goes on from a checkpoint, bit for bit, on any number of ranks and threads and with any
   /// exchange.
@@ -81,7 +83,7 @@ class Simulation {
   /// @param checkpoint  its folder; see find_checkpoint
   /// Errors, the same on every rank: InputError when it is damaged or of another model
   static Simulation restore(const Model& model, const std::string& checkpoint,
-                            MPI_Comm communicator, const RunOptions& options = {});
+                            Communicator communicator, const RunOptions& options = {});
   ~Simulation();
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;

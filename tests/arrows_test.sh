@@ -23,6 +23,12 @@ forbid '[<"](oneapi|tbb)/' 'only tasks includes TBB' core comm app
 forbid '[<"]CLI/' 'only app includes CLI11' core comm tasks
 forbid '"' 'includes are written <barchan/LAYER/NAME.hpp>' core comm tasks app
 
+calls=$(grep -rnE --include='*.hpp' --include='*.cpp' '\bMPI_[A-Z]' core tasks app)
+if [[ -n $calls ]]; then
+  printf 'MPI by its own names outside comm:\n%s\n\n' "$calls"
+  status=1
+fi
+
 missing=$(grep -rLE --include='*.hpp' '^#pragma once' core comm tasks app)
 if [[ -n $missing ]]; then
   printf 'headers without #pragma once:\n%s\n' "$missing"

@@ -2,11 +2,13 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
 
+#include <unistd.h>
+
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <support/mpi_session.hpp>
@@ -25,7 +27,8 @@ class TraceFile : public testing::Test {
   }
 
   Communicator communicator_;
-  std::string path_ = testing::TempDir() + "barchan_trace_test.json";
+  // Tests run side by side, each in its own process.
+  std::string path_ = fmt::format("{}barchan_trace_{}.json", testing::TempDir(), getpid());
 };
 
 TEST_F(TraceFile, HoldsSlicesWithNameStepAndDuration) {
