@@ -20,17 +20,6 @@ struct BondGeometry {
 };
 
 template <int Dim>
-double distance(const PeriodicBox& box, const Vec3& p, const Vec3& q) {
-  double d2 = 0.0;
-  for (int c = 0; c < Dim; ++c) {
-    double d = q[c] - p[c];
-    d -= box.length[c] * std::rint(d * box.inverse[c]);
-    d2 += d * d;
-  }
-  return std::sqrt(d2);
-}
-
-template <int Dim>
 BondGeometry bond_geometry(const PeriodicBox& box, const ParticleSet& set) {
   BondGeometry geometry;
   geometry.is_bonded.assign(set.particles.size(), 0);
@@ -44,8 +33,8 @@ BondGeometry bond_geometry(const PeriodicBox& box, const ParticleSet& set) {
   for (const BondData& bond : set.bonds) {
     const std::size_t a = find(bond.id_a), b = find(bond.id_b);
     geometry.is_bonded[a] = geometry.is_bonded[b] = 1;
-    geometry.lengths.push_back(
-        distance<Dim>(box, set.particles[a].position, set.particles[b].position));
+    geometry.lengths.push_back(std::sqrt(
+        distance2<Dim>(box, set.particles[a].position.data(), set.particles[b].position.data())));
   }
   return geometry;
 }
