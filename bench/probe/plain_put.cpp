@@ -1,9 +1,10 @@
-// A ping-pong of puts and nothing else: what `barchan probe` is held against. Knows no line of barchan.
+// A ping-pong of puts and nothing else: what `barchan probe` is held against. Knows no line of
+// barchan.
 //
 //   mpirun -n 2 plain_put BYTES...     prints a line for each size: bytes, half a round trip [µs]
 //
-// A message is MPI_Put of the data, MPI_Win_flush, MPI_Put of its number, MPI_Win_flush; the other rank watches for
-// the number. Round trips are timed one by one, by rank 0; the median counts.
+// A message is MPI_Put of the data, MPI_Win_flush, MPI_Put of its number, MPI_Win_flush; the other
+// rank watches for the number. Round trips are timed one by one, by rank 0; the median counts.
 #include <mpi.h>
 
 #include <algorithm>
@@ -78,7 +79,8 @@ int main(int argc, char** argv) {
   MPI_Comm_rank(MPI_COMM_WORLD, &rank);
   MPI_Comm_size(MPI_COMM_WORLD, &size);
   if (size != 2) {
-    if (rank == 0) std::fprintf(stderr, "plain_put: wants two ranks: mpirun -n 2 plain_put BYTES...\n");
+    if (rank == 0)
+      std::fprintf(stderr, "plain_put: wants two ranks: mpirun -n 2 plain_put BYTES...\n");
     MPI_Finalize();
     return 2;
   }
