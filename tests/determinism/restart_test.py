@@ -62,8 +62,11 @@ def compare(folder, expected, what):
 
 def children_of(parent):
     """Process ids of the command's ranks below mpirun."""
-    found = subprocess.run(["ps", "--ppid", str(parent), "-o", "pid="], capture_output=True, text=True)
-    return [int(word) for word in found.stdout.split()]
+    try:
+        children = pathlib.Path(f"/proc/{parent}/task/{parent}/children").read_text()
+    except OSError:
+        return []
+    return [int(word) for word in children.split()]
 
 
 def stop_and_go_on(command, expected):
@@ -77,6 +80,8 @@ def stop_and_go_on(command, expected):
     second = run(command, "stopped", 3, 1, "--restart", "auto")
     expect(second.returncode == 0, "the rest on three ranks: " + second.stderr)
     compare("stopped", expected, "ended at 1,234 steps, went on on three ranks")
+    numbers = json.loads(pathlib.Path("stopped/run.json").read_text())
+    expect(numbers["loop_steps"] == STEPS - 1234, f"steps of the loop after a restart: {numbers['loop_steps']}")
 
 
 def skip_damaged(command, expected):
