@@ -32,12 +32,12 @@ std::int64_t Progress::most_steps() {
   if (is_silent_) return rest;
   std::array<std::int64_t, 1> steps{1};
   if (simulation_.communicator().is_root()) {
-    const double loop = simulation_.timings().loop_seconds;
-    const auto done = static_cast<double>(simulation_.step());
-    if (loop > 0.0) steps[0] = static_cast<std::int64_t>(done / loop * interval_);
+    const Timings t = simulation_.timings();
+    if (t.loop_seconds > 0.0)
+      steps[0] =
+          static_cast<std::int64_t>(static_cast<double>(t.steps) / t.loop_seconds * interval_);
     // Grows gently, since the first steps tell little.
-    steps[0] =
-        std::clamp<std::int64_t>(steps[0], 1, std::max<std::int64_t>(16, 2 * simulation_.step()));
+    steps[0] = std::clamp<std::int64_t>(steps[0], 1, std::max<std::int64_t>(16, 2 * t.steps));
   }
   simulation_.communicator().bcast(std::as_writable_bytes(std::span(steps)));
   return std::min(steps[0], rest);
@@ -54,8 +54,8 @@ void Progress::print(double now) {
   const std::int64_t step = simulation_.step(), end = simulation_.model().time.num_steps;
   const double loop = t.loop_seconds - last_loop_;
   const double rate = loop > 0.0 ? static_cast<double>(step - last_step_) / loop : 0.0;
-  const double left =
-      static_cast<double>(end - step) * now / static_cast<double>(std::max<std::int64_t>(1, step));
+  const double left = static_cast<double>(end - step) * now /
+                      static_cast<double>(std::max<std::int64_t>(1, t.steps));
   std::string line = fmt::format(
       "step {} of {} ({}), {} particle-steps/s, {} left", grouped(step), grouped(end),
       percent(static_cast<double>(step) / static_cast<double>(end)),

@@ -33,11 +33,11 @@ bool DelayedExchange::is_shown(std::int64_t& shown_at) {
 }
 
 bool DelayedExchange::poll(Side side) {
-  return inner_->poll(side) && is_shown(shown_at_[static_cast<std::size_t>(side)]);
+  return inner_->poll(side) && is_shown(shown_at_[index_of(side)]);
 }
 
 void DelayedExchange::release(Side side) {
-  shown_at_[static_cast<std::size_t>(side)] = 0;
+  shown_at_[index_of(side)] = 0;
   inner_->release(side);
 }
 

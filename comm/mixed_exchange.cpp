@@ -73,7 +73,7 @@ MixedExchange::MixedExchange(const ExchangeMix& mix, const Communicator& communi
   for (const Side side : both_sides) {
     const bool is_near = place.is_near(neighbours.rank(side));
     Exchange* mine = parts_[is_near ? 0 : 1].get();
-    of_side_[static_cast<std::size_t>(side)] = mine != nullptr ? mine : parts_[0].get();
+    of_side_[index_of(side)] = mine != nullptr ? mine : parts_[0].get();
   }
 }
 

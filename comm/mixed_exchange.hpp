@@ -52,7 +52,7 @@ class MixedExchange final : public Exchange {
   bool allows_uneven_sides() const override;
 
  private:
-  [[nodiscard]] Exchange& of(Side side) const { return *of_side_[static_cast<std::size_t>(side)]; }
+  [[nodiscard]] Exchange& of(Side side) const { return *of_side_[index_of(side)]; }
 
   std::string name_;
   std::array<std::unique_ptr<Exchange>, 2> parts_;  ///< near, far; one may be null

@@ -1,8 +1,17 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 namespace barchan {
 
 enum class Side : int { Left = 0, Right = 1 };
+constexpr std::array<Side, 2> kSides{Side::Left, Side::Right};
+
+/// Of this side's element in an array of two.
+constexpr std::size_t index_of(Side side) {
+  return static_cast<std::size_t>(side);
+}
 
 constexpr Side opposite(Side side) {
   return side == Side::Left ? Side::Right : Side::Left;

@@ -39,27 +39,27 @@ bool RecordingExchange::poll_bulk() {
 
 void ReplayExchange::reserve(std::size_t bytes) {
   for (const Side side : both_sides) {
-    auto& out = out_[index(side)];
+    auto& out = out_[index_of(side)];
     if (neighbours_.has(side)) out.resize(std::max(out.size(), bytes));
   }
 }
 
 std::span<std::byte> ReplayExchange::outgoing(Side side, std::size_t bytes) {
-  auto& out = out_[index(side)];
+  auto& out = out_[index_of(side)];
   out.resize(std::max(out.size(), bytes));
   return {out.data(), bytes};
 }
 
 void ReplayExchange::send(Side side) {
-  times_[index(side)].sent = now_ns();
+  times_[index_of(side)].sent = now_ns();
 }
 
 bool ReplayExchange::poll(Side side) {
-  if (is_in_[index(side)]) return true;
+  if (is_in_[index_of(side)]) return true;
   if (!neighbours_.has(side)) return false;
-  in_[index(side)] = tape_->next(halo_channel(side));
-  is_in_[index(side)] = true;
-  times_[index(side)].posted = times_[index(side)].noticed = now_ns();
+  in_[index_of(side)] = tape_->next(halo_channel(side));
+  is_in_[index_of(side)] = true;
+  times_[index_of(side)].posted = times_[index_of(side)].noticed = now_ns();
   return true;
 }
 
@@ -67,7 +67,7 @@ void ReplayExchange::begin_bulk(std::span<const std::byte> /*to_left*/,
                                 std::span<const std::byte> /*to_right*/) {
   for (const Side side : both_sides) {
     const auto played = tape_->next(bulk_channel(side));
-    bulk_[index(side)].assign(played.begin(), played.end());
+    bulk_[index_of(side)].assign(played.begin(), played.end());
   }
 }
 

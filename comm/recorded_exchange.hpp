@@ -52,17 +52,15 @@ class ReplayExchange final : public Exchange {
   std::span<std::byte> outgoing(Side side, std::size_t bytes) override;
   void send(Side side) override;
   bool poll(Side side) override;
-  std::span<const std::byte> received(Side side) const override { return in_[index(side)]; }
-  void release(Side side) override { is_in_[index(side)] = false; }
+  std::span<const std::byte> received(Side side) const override { return in_[index_of(side)]; }
+  void release(Side side) override { is_in_[index_of(side)] = false; }
   void begin_bulk(std::span<const std::byte> to_left, std::span<const std::byte> to_right) override;
   bool poll_bulk() override { return true; }
-  std::vector<std::byte>& bulk(Side side) override { return bulk_[index(side)]; }
+  std::vector<std::byte>& bulk(Side side) override { return bulk_[index_of(side)]; }
   ExchangeStats stats() const override { return stats_; }
-  HaloTimes halo_times(Side side) const override { return times_[index(side)]; }
+  HaloTimes halo_times(Side side) const override { return times_[index_of(side)]; }
 
  private:
-  static constexpr std::size_t index(Side side) { return static_cast<std::size_t>(side); }
-
   std::shared_ptr<Tape> tape_;
   Neighbours neighbours_;
   std::array<std::vector<std::byte>, 2> out_, bulk_;

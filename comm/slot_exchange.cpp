@@ -106,7 +106,7 @@ void SlotExchange::post_message(Lane lane, Side side, bool has_more) {
   header.has_more = has_more ? 1 : 0;
   mine.is_packing = false;
   post({lane, side, header.number}, header);
-  if (lane == Lane::Halo) halo_times_[index(side)].sent = begin;
+  if (lane == Lane::Halo) halo_times_[index_of(side)].sent = begin;
 }
 
 void SlotExchange::send(Side side) {
@@ -143,7 +143,7 @@ bool SlotExchange::poll(Side side) {
   if (!look_for(Lane::Halo, side)) return false;
   if (was_in) return true;
   const Track& mine = track(Lane::Halo, side);
-  HaloTimes& times = halo_times_[index(side)];
+  HaloTimes& times = halo_times_[index_of(side)];
   times.noticed = now_ns();
   times.posted = mine.header.posted;
   if (mine.sent == mine.header.number)
@@ -186,14 +186,14 @@ void SlotExchange::begin_bulk(std::span<const std::byte> to_left,
       std::max<std::size_t>(1, (longest + capacity_.bulk - 1) / capacity_.bulk);
   const std::size_t agreed = agree_rounds(needed);
   for (const Side side : both_sides) {
-    if (agreed > 0) bulk_sides_[index(side)].num_rounds = agreed;
+    if (agreed > 0) bulk_sides_[index_of(side)].num_rounds = agreed;
     if (neighbours_.has(side)) send_fragment(side);
   }
 }
 
 void SlotExchange::prepare_bulk(Side side, std::span<const std::byte> bytes) {
   if (!bytes.empty()) require_neighbour(side, "Exchange::begin_bulk");
-  BulkSide& mine = bulk_sides_[index(side)];
+  BulkSide& mine = bulk_sides_[index_of(side)];
   mine.out.assign(bytes.begin(), bytes.end());
   mine.in.clear();
   mine.num_sent = 0;
@@ -203,7 +203,7 @@ void SlotExchange::prepare_bulk(Side side, std::span<const std::byte> bytes) {
 }
 
 void SlotExchange::send_fragment(Side side) {
-  BulkSide& mine = bulk_sides_[index(side)];
+  BulkSide& mine = bulk_sides_[index_of(side)];
   const std::size_t bytes = std::min(capacity_.bulk, mine.out.size() - mine.num_sent);
   std::byte* outbox = open_outbox(Lane::Bulk, side, bytes) + header_bytes;
   std::copy_n(mine.out.data() + mine.num_sent, bytes, outbox);
@@ -216,7 +216,7 @@ void SlotExchange::send_fragment(Side side) {
 
 // One round at most: in a ring of blocking exchanges a rank must serve both sides in turn.
 void SlotExchange::advance_bulk(Side side) {
-  BulkSide& mine = bulk_sides_[index(side)];
+  BulkSide& mine = bulk_sides_[index_of(side)];
   if (mine.is_done || !look_for(Lane::Bulk, side)) return;
   const Track& lane = track(Lane::Bulk, side);
   mine.in.insert(mine.in.end(), lane.payload.begin(), lane.payload.end());

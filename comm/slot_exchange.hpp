@@ -46,9 +46,9 @@ class SlotExchange : public Exchange {
   void begin_bulk(std::span<const std::byte> to_left, std::span<const std::byte> to_right) final;
   void progress() override;
   bool poll_bulk() final;
-  std::vector<std::byte>& bulk(Side side) final { return bulk_sides_[index(side)].in; }
+  std::vector<std::byte>& bulk(Side side) final { return bulk_sides_[index_of(side)].in; }
   ExchangeStats stats() const final;
-  HaloTimes halo_times(Side side) const final { return halo_times_[index(side)]; }
+  HaloTimes halo_times(Side side) const final { return halo_times_[index_of(side)]; }
 
   /// First slots; collective. make_exchange calls it once. Errors, the same on every rank:
   /// InputError for slots that do not fit into memory.
@@ -78,7 +78,6 @@ class SlotExchange : public Exchange {
   [[nodiscard]] const Neighbours& neighbours() const { return neighbours_; }
   [[nodiscard]] SlotCapacity capacity() const { return capacity_; }
 
-  static constexpr std::size_t index(Side side) { return static_cast<std::size_t>(side); }
   static constexpr std::size_t index(const MessageKey& key) {
     return static_cast<std::size_t>(key.lane_side());
   }

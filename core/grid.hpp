@@ -10,6 +10,18 @@
 
 namespace barchan {
 
+/// Squared distance between a point and the nearest image of another [m²].
+template <int Dim>
+double distance2(const PeriodicBox& box, const double* p, const double* q) {
+  double d2 = 0.0;
+  for (int c = 0; c < Dim; ++c) {
+    double d = q[c] - p[c];
+    d -= box.length[c] * std::rint(d * box.inverse[c]);
+    d2 += d * d;
+  }
+  return d2;
+}
+
 /// The one global grid of a run: it orders the particles, and cuts between strips lie on its faces.
 ///
 /// Cells are at least `cutoff` wide, so a particle's partners are in its own cell or in a

@@ -49,12 +49,7 @@ void measure_pairs(const Lane<Dim>& lane, const PairList& list, Measures& m) {
     const auto at = static_cast<std::size_t>(k);
     if (list.code[at] == LawTable::kBonded) continue;
     const std::int32_t i = list.i[at], j = list.j[at];
-    double d2 = 0.0;
-    for (int c = 0; c < Dim; ++c) {
-      double d = store.x(j)[c] - store.x(i)[c];
-      d -= box.length[c] * std::rint(d * box.inverse[c]);
-      d2 += d * d;
-    }
+    const double d2 = distance2<Dim>(box, store.x(i), store.x(j));
     const double reach = store.radius(i) + store.radius(j);
     if (d2 >= reach * reach) continue;
     const double overlap = reach - std::sqrt(d2);
@@ -131,13 +126,9 @@ Travel Lane<Dim>::travel() const {
   for (std::int32_t i = 0; i < store_.num_owned; ++i) {
     const double *x = store_.x(i), *v = store_.v(i);
     const double* from = store_.reference.data() + std::size_t{Dim} * static_cast<std::size_t>(i);
-    double d2 = 0.0, v2 = 0.0;
-    for (int c = 0; c < Dim; ++c) {
-      double d = x[c] - from[c];
-      d -= box.length[c] * std::rint(d * box.inverse[c]);
-      d2 += d * d;
-      v2 += v[c] * v[c];
-    }
+    const double d2 = distance2<Dim>(box, from, x);
+    double v2 = 0.0;
+    for (int c = 0; c < Dim; ++c) v2 += v[c] * v[c];
     // Written so that NaN wins.
     if (!(d2 <= t.distance2)) t.distance2 = d2;
     if (!(v2 <= t.speed2)) t.speed2 = v2;
@@ -153,13 +144,9 @@ double Lane<Dim>::distance2_of_last_step() const {
   double most = 0.0;
   for (std::int32_t i = 0; i < store_.num_owned; ++i) {
     const double* from = store_.reference.data() + std::size_t{Dim} * static_cast<std::size_t>(i);
-    double d2 = 0.0;
-    for (int c = 0; c < Dim; ++c) {
-      double d = store_.x(i)[c] - world_->dt * store_.v(i)[c] - from[c];
-      d -= box.length[c] * std::rint(d * box.inverse[c]);
-      d2 += d * d;
-    }
-    most = std::max(most, d2);
+    double before[Dim];
+    for (int c = 0; c < Dim; ++c) before[c] = store_.x(i)[c] - world_->dt * store_.v(i)[c];
+    most = std::max(most, distance2<Dim>(box, from, before));
   }
   return most;
 }

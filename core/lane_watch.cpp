@@ -9,18 +9,6 @@ namespace barchan {
 namespace {
 
 template <int Dim>
-double distance2(const ParticleStore<Dim>& store, const PeriodicBox& box, std::int32_t i,
-                 std::int32_t j) {
-  double d2 = 0.0;
-  for (int c = 0; c < Dim; ++c) {
-    double d = store.x(j)[c] - store.x(i)[c];
-    d -= box.length[c] * std::rint(d * box.inverse[c]);
-    d2 += d * d;
-  }
-  return d2;
-}
-
-template <int Dim>
 void take_worst_pair(const ParticleStore<Dim>& store, const PeriodicBox& box, const PairList& list,
                      WorstOverlap& worst) {
   for (std::int64_t k = 0; k < list.size(); ++k) {
@@ -30,7 +18,7 @@ void take_worst_pair(const ParticleStore<Dim>& store, const PeriodicBox& box, co
     const double reach = store.radius(i) + store.radius(j),
                  least = std::min(store.radius(i), store.radius(j));
     const double known = reach - worst.share * least;  // no root for those that overlap less
-    const double d2 = distance2(store, box, i, j);
+    const double d2 = distance2<Dim>(box, store.x(i), store.x(j));
     if (d2 >= known * known && known > 0.0) continue;
     const double overlap = reach - std::sqrt(d2);
     if (!(overlap > worst.share * least)) continue;
@@ -112,7 +100,7 @@ typename Lane<Dim>::Partners Lane<Dim>::partners(std::int32_t row) {
     for (std::size_t k = 0; k < list.i.size(); ++k) {
       if (list.i[k] != row && list.j[k] != row) continue;
       const double reach = store_.radius(list.i[k]) + store_.radius(list.j[k]);
-      if (distance2(store_, box, list.i[k], list.j[k]) >= reach * reach) continue;
+      if (distance2<Dim>(box, store_.x(list.i[k]), store_.x(list.j[k])) >= reach * reach) continue;
       const std::int32_t other = list.i[k] == row ? list.j[k] : list.i[k];
       found.ids.push_back(store_.id[static_cast<std::size_t>(other)]);
     }

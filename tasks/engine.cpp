@@ -44,6 +44,7 @@ std::int64_t Simulation::EngineOf<Dim>::run(std::int64_t num_steps) {
     throw;
   }
   loop_seconds_ += now() - begin;
+  loop_steps_ += done;
   return done;
 }
 

@@ -143,6 +143,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   bool is_in_step_ = false;     ///< or one was not ended
   double chunk_seconds_ = 0.0;  ///< of chunks when they were last sized
   std::int64_t chunks_sized_at_ = 0;
+  std::int64_t loop_steps_ = 0;
   double loop_seconds_ = 0.0, rebuild_seconds_ = 0.0, checkpoint_seconds_ = 0.0;
 };
 

@@ -113,6 +113,7 @@ Timings Simulation::EngineOf<Dim>::timings() const {
   Timings t;
   const StepTimes steps = graph_->times();
   t.loop_seconds = loop_seconds_;
+  t.steps = loop_steps_;
   // Lanes work side by side: a step's search is averaged over them, a rebuild's counts once.
   SearchSeconds search;
   const double share = 1.0 / strip_->num_lanes();

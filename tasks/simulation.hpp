@@ -36,6 +36,7 @@ struct CommunicationTime {
 /// Where the time of a run went, this rank; what workers do side by side is averaged over them.
 struct Timings {
   double loop_seconds = 0.0;             ///< inside run()
+  std::int64_t steps = 0;                ///< of this loop; what came before a restart is not in it
   std::map<std::string, double> phases;  ///< name → seconds; the rest of the loop is "other"
   std::map<std::string, CommunicationTime> communication;  ///< "halo", "rebuild", "reductions"
   double in_flight_seconds = 0.0;                          ///< all kinds

@@ -15,11 +15,6 @@
 namespace barchan {
 namespace {
 
-constexpr std::array<Side, 2> kSides{Side::Left, Side::Right};
-constexpr std::size_t at(Side side) {
-  return static_cast<std::size_t>(side);
-}
-
 constexpr double kSecond = 1e-9;  // in nanoseconds
 
 /// The edge from who starts a step to all of its tasks, which look for their own edges behind it.
@@ -54,7 +49,7 @@ StepGraph<Dim>::StepGraph(Strip<Dim>& strip, const RunOptions& options)
 
 template <int Dim>
 bool StepGraph<Dim>::has_band(int lane, Side side) const {
-  return strip_.lane(lane).band(side == Side::Left ? Lane<Dim>::Left : Lane<Dim>::Right).exists;
+  return strip_.lane(lane).band(in_core<Dim>(side)).exists;
 }
 
 template <int Dim>
@@ -92,13 +87,14 @@ void StepGraph<Dim>::run(const StepFrame& frame) {
     drain_begin_ = 0;
     for (LaneNodes& n : nodes_) n.idle_since = 0;
     left_is_done_ = false;
-    for (const Side side : kSides) arrived_[at(side)] = !strip_.awaits(side);
+    for (const Side side : kSides) arrived_[index_of(side)] = !strip_.awaits(side);
     const ProgressThread::Shift shift(driver_.get());
     if (schedule_ == Schedule::Sequential) await_all();
     tell_release(&begin_of_step);
     for (int l = 0; l < strip_.num_lanes(); ++l) {
       for (const Side side : kSides) {
-        if (has_band(l, side) && (!strip_.is_outer(l, side) || arrived_[at(side)])) signal(l, side);
+        if (has_band(l, side) && (!strip_.is_outer(l, side) || arrived_[index_of(side)]))
+          signal(l, side);
       }
     }
     for (int l = 0; l < strip_.num_lanes(); ++l) put(*nodes_[static_cast<std::size_t>(l)].chunk, 0);
@@ -111,7 +107,7 @@ void StepGraph<Dim>::run(const StepFrame& frame) {
 template <int Dim>
 void StepGraph<Dim>::end_step() {
   require_all_bands();
-  strip_.end_step(true);
+  strip_.end_step();
   ++num_steps_;
   sent_at_ = next_sent_at_;
   next_sent_at_ = 0;
@@ -204,11 +200,11 @@ void StepGraph<Dim>::run_band(int l, Side side) {
   maybe_delay();
   {
     std::unique_lock<std::mutex> lock(comm_mutex_, std::defer_lock);
-    const bool is_outer = strip_.is_outer(l, side) && strip_.neighbours().has(side);
-    if (is_outer) lock.lock();
+    const bool is_remote = strip_.is_remote(l, side);
+    if (is_remote) lock.lock();
     strip_.finish_band(l, side);
     send(l, side);
-    if (is_outer && side == Side::Left) left_is_done_ = true;
+    if (is_remote && side == Side::Left) left_is_done_ = true;
   }
   const std::int64_t end = now_ns();
   ++bands_done_;
@@ -229,7 +225,7 @@ void StepGraph<Dim>::run_band(int l, Side side) {
 /// @pre comm_mutex_ is held for a band that another rank waits for
 template <int Dim>
 void StepGraph<Dim>::send(int l, Side side) {
-  if (!strip_.is_outer(l, side) || !strip_.neighbours().has(side)) return strip_.send_band(l, side);
+  if (!strip_.is_remote(l, side)) return strip_.send_band(l, side);
   const std::int64_t in_exchange = strip_.send_ns(), begin = now_ns();
   strip_.send_band(l, side);
   const std::int64_t end = now_ns(), spent = strip_.send_ns() - in_exchange;
@@ -256,7 +252,7 @@ template <int Dim>
 bool StepGraph<Dim>::poll_sides() {
   bool all = true;
   for (const Side side : kSides) {
-    if (arrived_[at(side)]) continue;
+    if (arrived_[index_of(side)]) continue;
     if (!may_poll(side)) continue;
     if (strip_.poll(side))
       notice(side);
@@ -275,7 +271,7 @@ void StepGraph<Dim>::notice(Side side) {
   const std::int64_t since = nodes_[static_cast<std::size_t>(lane)].idle_since;
   const std::int64_t until = drain_begin_ != 0 ? drain_begin_ : now;
   if (strip_.num_lanes() > 1 && since != 0 && since < until) wait_ns_ += until - since;
-  arrived_[at(side)] = true;
+  arrived_[index_of(side)] = true;
   if (arrived_[0] && arrived_[1] && sent_at_ != 0) flight_ns_ += now - sent_at_;
   if (trace_ != nullptr) trace_->noticed(side, trace_->step(), now);
   if (lanes_left_ >= 0) signal(lane, side);
@@ -289,7 +285,7 @@ void StepGraph<Dim>::drive() {
   if (exchange.is_blocking()) return;
   exchange.progress();
   for (const Side side : kSides) {
-    if (!arrived_[at(side)] && may_poll(side)) (void)exchange.poll(side);
+    if (!arrived_[index_of(side)] && may_poll(side)) (void)exchange.poll(side);
   }
 }
 
@@ -309,7 +305,7 @@ void StepGraph<Dim>::try_poll() {
   poll_ns_ += end - begin;
   if (trace_ == nullptr) return;
   for (const Side side : kSides) {  // a slice for each, since polls in vain are many
-    if (arrived_[at(side)] != before[at(side)])
+    if (arrived_[index_of(side)] != before[index_of(side)])
       trace_->slice(Trace::Slice::Poll, static_cast<int>(side), begin, end);
   }
 }

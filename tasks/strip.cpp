@@ -10,19 +10,7 @@
 #include <barchan/core/error.hpp>
 
 namespace barchan {
-namespace {
-
-template <int Dim>
-typename Lane<Dim>::Side in_core(Side side) {
-  return side == Side::Left ? Lane<Dim>::Left : Lane<Dim>::Right;
-}
-
-constexpr std::size_t at(Side side) {
-  return static_cast<std::size_t>(side);
-}
-constexpr std::array<Side, 2> kSides{Side::Left, Side::Right};
-
-}  // namespace
+namespace {}  // namespace
 
 template <int Dim>
 Strip<Dim>::Strip(World<Dim>& world, const Communicator& communicator,
@@ -48,6 +36,12 @@ bool Strip<Dim>::has_neighbour(int l, Side side) const {
 }
 
 template <int Dim>
+auto Strip<Dim>::inbox(int l, Side side) const -> const Bytes& {
+  const Post& post = posts_[static_cast<std::size_t>(lane_beside(l, side))];
+  return post.halo[static_cast<std::size_t>(parity_)][index_of(opposite(side))];
+}
+
+template <int Dim>
 void Strip<Dim>::place_bands() {
   for (int l = 0; l < num_lanes(); ++l) {
     const int place = first_lane() + l;
@@ -57,7 +51,7 @@ void Strip<Dim>::place_bands() {
       // Ghosts come first where the neighbour lies lower in the grid: always on the left, but
       // around the end.
       band.ghosts_first = side == Side::Left ? place > 0 : place + 1 == total_lanes();
-      band.returns = returns_ && is_outer(l, side) && neighbours_.has(side);
+      band.returns = returns_ && is_remote(l, side);
     }
   }
 }
@@ -67,12 +61,8 @@ void Strip<Dim>::finish_band(int l, Side side) {
   Lane<Dim>& mine = lane(l);
   const auto core_side = in_core<Dim>(side);
   const Band& band = mine.band(core_side);
-  if (!is_outer(l, side) || !neighbours_.has(side)) {
-    if (!fresh_) {
-      const int n = num_lanes(), other = (l + (side == Side::Left ? n - 1 : 1)) % n;
-      mine.unpack_halo(core_side, posts_[static_cast<std::size_t>(other)]
-                                      .halo[static_cast<std::size_t>(parity_)][at(opposite(side))]);
-    }
+  if (!is_remote(l, side)) {
+    if (!fresh_) mine.unpack_halo(core_side, inbox(l, side));
     return mine.finish_band(core_side);
   }
   if (band.returns && side == Side::Right) {
@@ -119,22 +109,22 @@ template <int Dim>
 void Strip<Dim>::send_band(int l, Side side) {
   Lane<Dim>& mine = lane(l);
   const auto core_side = in_core<Dim>(side);
-  if (is_outer(l, side) && neighbours_.has(side)) {
+  if (is_remote(l, side)) {
     if (returns_ && side == Side::Left) return;  // ghosts go right only
     return send_halo(side, mine.halo_bytes(core_side),
                      [&](std::span<std::byte> message) { mine.pack_halo(core_side, message); });
   }
-  auto& outbox =
-      posts_[static_cast<std::size_t>(l)].halo[static_cast<std::size_t>(1 - parity_)][at(side)];
+  auto& outbox = posts_[static_cast<std::size_t>(l)]
+                     .halo[static_cast<std::size_t>(1 - parity_)][index_of(side)];
   outbox.resize(mine.halo_bytes(core_side));
   mine.pack_halo(core_side, outbox);
 }
 
 template <int Dim>
-void Strip<Dim>::end_step(bool sends) {
+void Strip<Dim>::end_step() {
   parity_ = 1 - parity_;
   fresh_ = false;
-  for (const Side side : kSides) awaited_[at(side)] = sends && neighbours_.has(side);
+  for (const Side side : kSides) awaited_[index_of(side)] = neighbours_.has(side);
 }
 
 template <int Dim>
@@ -153,21 +143,9 @@ void Strip<Dim>::complete_halo() {
   if (fresh_) return;
   for (int l = 0; l < num_lanes(); ++l) {
     for (const Side side : kSides) {
-      if (is_outer(l, side) || !has_neighbour(l, side)) continue;
-      const int other = l + (side == Side::Left ? -1 : 1);
-      lane(l).unpack_halo(in_core<Dim>(side),
-                          posts_[static_cast<std::size_t>(other)]
-                              .halo[static_cast<std::size_t>(parity_)][at(opposite(side))]);
+      if (has_neighbour(l, side) && !is_remote(l, side))
+        lane(l).unpack_halo(in_core<Dim>(side), inbox(l, side));
     }
-  }
-  if (communicator_.size() == 1 &&
-      has_neighbour(0, Side::Left)) {  // around the end of a periodic strip axis
-    const int last = num_lanes() - 1;
-    const auto& boxes = [&](int l) -> auto& {
-      return posts_[static_cast<std::size_t>(l)].halo[static_cast<std::size_t>(parity_)];
-    };
-    lane(0).unpack_halo(Lane<Dim>::Left, boxes(last)[at(Side::Right)]);
-    lane(last).unpack_halo(Lane<Dim>::Right, boxes(0)[at(Side::Left)]);
   }
   for (const Side side : kSides) {
     if (!awaits(side) || (returns_ && side == Side::Right)) continue;
@@ -175,7 +153,7 @@ void Strip<Dim>::complete_halo() {
     lane(side == Side::Left ? 0 : num_lanes() - 1)
         .unpack_halo(in_core<Dim>(side), exchange_->received(side));
     exchange_->release(side);
-    awaited_[at(side)] = false;
+    awaited_[index_of(side)] = false;
   }
   fresh_ = true;
 }

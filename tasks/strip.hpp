@@ -27,6 +27,11 @@ struct RebuildWaits {
   [[nodiscard]] double sum() const { return halo + migration + ghosts; }
 };
 
+template <int Dim>
+typename Lane<Dim>::Side in_core(Side side) {
+  return side == Side::Left ? Lane<Dim>::Left : Lane<Dim>::Right;
+}
+
 /// The strip of one rank: its lanes, one per thread, and what passes between lanes and between
 /// ranks.
 ///
@@ -64,16 +69,20 @@ class Strip {
   [[nodiscard]] bool is_outer(int l, Side side) const {
     return side == Side::Left ? l == 0 : l + 1 == num_lanes();
   }
+  /// Whether what lies beyond this side of a lane is another rank's.
+  [[nodiscard]] bool is_remote(int l, Side side) const {
+    return is_outer(l, side) && neighbours_.has(side);
+  }
   [[nodiscard]] bool scheme_returns() const { return returns_; }
   /// Whether this band must wait for a message of another rank in this step.
-  [[nodiscard]] bool awaits(Side side) const { return awaited_[static_cast<std::size_t>(side)]; }
+  [[nodiscard]] bool awaits(Side side) const { return awaited_[index_of(side)]; }
   [[nodiscard]] bool poll(Side side) { return exchange_->poll(side); }
   /// Ghosts in, pairs, rows: everything that a band needs, once its message is there.
   void finish_band(int l, Side side);
   /// Publishes the finished band for the next step. @pre finish_band
   void send_band(int l, Side side);
   /// After all bands: the next step's messages are expected.
-  void end_step(bool sends);
+  void end_step();
   /// Waits for the messages of this step and unpacks them, without computing; for measurements
   /// between steps.
   void complete_halo();
@@ -108,7 +117,15 @@ class Strip {
     std::array<std::array<Bytes, 2>, 2> halo;  ///< by parity and side
   };
 
+  static constexpr int kMinSlabs = 2;  ///< of a lane: a particle lies in at most one band
+
   void place_bands();
+  /// Before there are threads.
+  ForEachLane one_by_one() const {
+    return [this](const std::function<void(int)>& body) {
+      for (int l = 0; l < num_lanes(); ++l) body(l);
+    };
+  }
   void discard_pending();
   void recut();
   void migrate(const ForEachLane& parallel);
@@ -116,6 +133,15 @@ class Strip {
   void wait_bulk(const char* what);
   void wait_halo(Side side);
   [[nodiscard]] bool has_neighbour(int l, Side side) const;
+  /// The lane of this rank beside this one. Around the end of a periodic axis it may be itself.
+  [[nodiscard]] int lane_beside(int l, Side side) const {
+    return (l + (side == Side::Left ? num_lanes() - 1 : 1)) % num_lanes();
+  }
+  /// What the lane beside wrote of its band, for the step at hand. @pre has_neighbour, !is_remote
+  [[nodiscard]] const Bytes& inbox(int l, Side side) const;
+  /// Sends the outermost posts. bulk() gives what came, from a rank or a lane; empty: from nobody.
+  void begin_bulk();
+  [[nodiscard]] std::span<const std::byte> bulk(int l, Side side) const;
   void refresh_ghosts();
   [[nodiscard]] int first_lane() const { return communicator_.rank() * num_lanes(); }
   [[nodiscard]] int total_lanes() const { return communicator_.size() * num_lanes(); }

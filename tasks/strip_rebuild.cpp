@@ -13,76 +13,9 @@
 namespace barchan {
 namespace {
 
-constexpr int kMinSlabs = 2;    // a particle lies in at most one band
 constexpr int kRecutEvery = 8;  // rebuilds between looks at the balance
-constexpr std::array<Side, 2> kSides{Side::Left, Side::Right};
-constexpr std::size_t at(Side side) {
-  return static_cast<std::size_t>(side);
-}
 
 }  // namespace
-
-template <int Dim>
-void Strip<Dim>::seed(const ParticleSet& set) {
-  const Grid<Dim>& grid = world_.grid;
-  std::vector<std::int64_t> counts(static_cast<std::size_t>(grid.num_slabs()), 0);
-  std::vector<int> slabs(set.particles.size());
-  for (std::size_t p = 0; p < set.particles.size(); ++p) {
-    double x[3] = {set.particles[p].position[0], set.particles[p].position[1],
-                   set.particles[p].position[2]};
-    grid.wrap(x);
-    slabs[p] = grid.coordinate(x, 0);
-    ++counts[static_cast<std::size_t>(slabs[p])];
-  }
-  cuts_ = cut_equal(counts, total_lanes(), kMinSlabs);
-
-  std::vector<std::int32_t> where;  // by id, only where there are bonds
-  std::vector<std::pair<std::int64_t, std::size_t>> by_id;
-  std::vector<double> lengths;
-  std::vector<char> bonded(set.particles.size(), 0);
-  if (!set.bonds.empty()) {
-    for (std::size_t p = 0; p < set.particles.size(); ++p)
-      by_id.emplace_back(set.particles[p].id, p);
-    std::sort(by_id.begin(), by_id.end());
-    const auto find = [&](std::int64_t id) {
-      return std::lower_bound(by_id.begin(), by_id.end(),
-                              std::pair<std::int64_t, std::size_t>(id, 0))
-          ->second;
-    };
-    for (const BondData& b : set.bonds) {
-      const std::size_t p = find(b.id_a), q = find(b.id_b);
-      bonded[p] = bonded[q] = 1;
-      double d2 = 0.0;
-      for (int c = 0; c < Dim; ++c) {
-        double d = set.particles[q].position[c] - set.particles[p].position[c];
-        d -= grid.box().length[c] * std::rint(d * grid.box().inverse[c]);
-        d2 += d * d;
-      }
-      lengths.push_back(std::sqrt(d2));
-    }
-  }
-  for (int l = 0; l < num_lanes(); ++l) {
-    const int begin = cuts_[static_cast<std::size_t>(first_lane() + l)],
-              end = cuts_[static_cast<std::size_t>(first_lane() + l + 1)];
-    std::vector<ParticleData> mine;
-    std::vector<char> mine_bonded;
-    for (std::size_t p = 0; p < set.particles.size(); ++p) {
-      if (slabs[p] < begin || slabs[p] >= end) continue;
-      mine.push_back(set.particles[p]);
-      mine_bonded.push_back(bonded[p]);
-    }
-    lane(l).seed(begin, end, mine, set.bonds, lengths, mine_bonded);
-    lane(l).order();
-  }
-  const ForEachLane one_by_one = [this](const std::function<void(int)>& body) {
-    for (int l = 0; l < num_lanes(); ++l) body(l);
-  };
-  exchange_ghosts(one_by_one);
-  for (const auto& lane : lanes_) {
-    lane->restart_search_seconds();  // setting up is not part of the loop
-    lane->forget_imbalance();
-  }
-}
 
 template <int Dim>
 void Strip<Dim>::rebuild(const ForEachLane& parallel) {
@@ -136,21 +69,13 @@ void Strip<Dim>::migrate(const ForEachLane& parallel) {
     auto& out = posts_[static_cast<std::size_t>(l)].out;
     lane(l).begin_rebuild(cuts_[place], cuts_[place + 1], out[0], out[1]);
   });
-  const Bytes none;
-  const auto outgoing = [&](Side side) -> const Bytes& {
-    return neighbours_.has(side) ? posts_[side == Side::Left ? 0 : posts_.size() - 1].out[at(side)]
-                                 : none;
-  };
-  bulk_begin_ = now_ns();
-  if (exchange_) exchange_->begin_bulk(outgoing(Side::Left), outgoing(Side::Right));
+  begin_bulk();
   if (neighbours_.has(Side::Left) || neighbours_.has(Side::Right)) {
     for (int l = 0; l < num_lanes(); ++l) num_migrations_ += lane(l).num_leaving();
   }
   parallel([this](int l) {
     for (const Side side : kSides) {
-      if (!has_neighbour(l, side) || (is_outer(l, side) && neighbours_.has(side))) continue;
-      const int n = num_lanes(), other = (l + (side == Side::Left ? n - 1 : 1)) % n;
-      lane(l).absorb(posts_[static_cast<std::size_t>(other)].out[at(opposite(side))]);
+      if (has_neighbour(l, side) && !is_remote(l, side)) lane(l).absorb(bulk(l, side));
     }
   });
   if (exchange_) {
@@ -165,22 +90,34 @@ void Strip<Dim>::migrate(const ForEachLane& parallel) {
 }
 
 template <int Dim>
+void Strip<Dim>::begin_bulk() {
+  bulk_begin_ = now_ns();
+  if (!exchange_) return;
+  static const Bytes none;
+  const auto outgoing = [&](Side side) -> const Bytes& {
+    if (!neighbours_.has(side)) return none;
+    return (side == Side::Left ? posts_.front() : posts_.back()).out[index_of(side)];
+  };
+  exchange_->begin_bulk(outgoing(Side::Left), outgoing(Side::Right));
+}
+
+template <int Dim>
+std::span<const std::byte> Strip<Dim>::bulk(int l, Side side) const {
+  if (!has_neighbour(l, side)) return {};
+  if (is_remote(l, side)) return exchange_->bulk(side);
+  return posts_[static_cast<std::size_t>(lane_beside(l, side))].out[index_of(opposite(side))];
+}
+
+template <int Dim>
 void Strip<Dim>::exchange_ghosts(const ForEachLane& parallel) {
   parallel([this](int l) {
     for (const Side side : kSides) {
-      auto& out = posts_[static_cast<std::size_t>(l)].out[at(side)];
+      auto& out = posts_[static_cast<std::size_t>(l)].out[index_of(side)];
       out.clear();
-      if (has_neighbour(l, side))
-        lane(l).pack_ghosts(side == Side::Left ? Lane<Dim>::Left : Lane<Dim>::Right, out);
+      if (has_neighbour(l, side)) lane(l).pack_ghosts(in_core<Dim>(side), out);
     }
   });
-  const Bytes none;
-  const auto outgoing = [&](Side side) -> const Bytes& {
-    return neighbours_.has(side) ? posts_[side == Side::Left ? 0 : posts_.size() - 1].out[at(side)]
-                                 : none;
-  };
-  bulk_begin_ = now_ns();
-  if (exchange_) exchange_->begin_bulk(outgoing(Side::Left), outgoing(Side::Right));
+  begin_bulk();
   parallel([this](int l) { lane(l).list_owned(); });  // the messages travel meanwhile
   if (exchange_ && !returns_) begin_sizes();
   if (exchange_) {
@@ -188,14 +125,8 @@ void Strip<Dim>::exchange_ghosts(const ForEachLane& parallel) {
     wait_bulk("ghosts");
     count_wait(waits_.ghosts, Trace::Slice::Ghosts, begin);
   }
-  parallel([this, &none](int l) {
-    const auto incoming = [&](Side side) -> std::span<const std::byte> {
-      if (!has_neighbour(l, side)) return none;
-      if (is_outer(l, side) && neighbours_.has(side)) return exchange_->bulk(side);
-      const int n = num_lanes(), other = (l + (side == Side::Left ? n - 1 : 1)) % n;
-      return posts_[static_cast<std::size_t>(other)].out[at(opposite(side))];
-    };
-    lane(l).take_ghosts(incoming(Side::Left), incoming(Side::Right));
+  parallel([this](int l) {
+    lane(l).take_ghosts(bulk(l, Side::Left), bulk(l, Side::Right));
     lane(l).restore_history();
     lane(l).cut_chunks(chunk_pairs);
   });
@@ -203,7 +134,7 @@ void Strip<Dim>::exchange_ghosts(const ForEachLane& parallel) {
   fresh_ = true;
   awaited_ = {};
   // In the published scheme results come back even where ghosts are fresh.
-  if (returns_) awaited_[at(Side::Right)] = neighbours_.has(Side::Right);
+  if (returns_) awaited_[index_of(Side::Right)] = neighbours_.has(Side::Right);
   if (!exchange_) return;
   if (returns_) begin_sizes();  // sizes of results follow from the lists
   const std::int64_t begin = now_ns();
@@ -217,9 +148,9 @@ template <int Dim>
 void Strip<Dim>::reserve_posts() {
   for (int l = 0; l < num_lanes(); ++l) {
     for (const Side side : kSides) {
-      const std::size_t bytes =
-          lane(l).halo_bytes(side == Side::Left ? Lane<Dim>::Left : Lane<Dim>::Right);
-      for (auto& boxes : posts_[static_cast<std::size_t>(l)].halo) boxes[at(side)].reserve(bytes);
+      const std::size_t bytes = lane(l).halo_bytes(in_core<Dim>(side));
+      for (auto& boxes : posts_[static_cast<std::size_t>(l)].halo)
+        boxes[index_of(side)].reserve(bytes);
     }
   }
   if (!returns_) return;

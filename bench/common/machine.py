@@ -1,7 +1,9 @@
 """What a result was measured on: processor, caches, flags, compiler, commit, load. No host names, no dates."""
 import os
 import re
+import resource
 import subprocess
+import time
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 FLAGS = ("sse2", "avx", "avx2", "fma", "avx512f", "avx512dq", "avx512vl", "avx512bw")
@@ -68,6 +70,36 @@ def slug():
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")
 
 
-def load():
-    """Mean number of processes that wanted a core over the last minute; above 0.5 figures are not worth much."""
-    return os.getloadavg()[0]
+def busy_seconds():
+    """Time that all cores of the machine have worked since it started [s]."""
+    with open("/proc/stat") as file:
+        user, nice, system, _, _, irq, softirq = (int(word) for word in file.readline().split()[1:8])
+    return (user + nice + system + irq + softirq) / os.sysconf("SC_CLK_TCK")
+
+
+class OtherWork:
+    """Cores that processes other than this one and its children have used while it lived, in the mean.
+
+    A child counts when it has ended and been waited for. Ticks of the clock make it rough below a second.
+    """
+
+    def __init__(self):
+        self.begin = self.now()
+
+    @staticmethod
+    def now():
+        own = sum(usage.ru_utime + usage.ru_stime for usage in
+                  (resource.getrusage(resource.RUSAGE_SELF), resource.getrusage(resource.RUSAGE_CHILDREN)))
+        return time.monotonic(), busy_seconds(), own
+
+    def cores(self):
+        seconds, busy, own = (after - before for after, before in zip(self.now(), self.begin))
+        return max(0.0, busy - own) / seconds if seconds > 0 else 0.0
+
+
+WHOLE = OtherWork()  # while a script ran
+
+
+def load_of_others():
+    """Cores that others have used since the script began; above 0.2 figures are rough."""
+    return WHOLE.cores()

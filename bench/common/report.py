@@ -1,9 +1,14 @@
 """Tables and result files."""
 import json
 import os
+import shlex
 import statistics
+import sys
 
 import machine
+
+BUSY = 0.2  # cores that others may use
+PLACES = ("--data", "--barchan", "--mpich", "--work", "--out")
 
 
 def median(values):
@@ -41,18 +46,29 @@ def table(head, rows):
     return "\n".join([line(head), "| " + " | ".join(rule) + " |", *[line(row) for row in cells]]) + "\n"
 
 
+def command_line(script):
+    """The script with its arguments, but without folders and files, which mean nothing elsewhere."""
+    words, before = [script], ""
+    for word in sys.argv[1:]:
+        if before not in PLACES and word.split("=")[0] not in PLACES:
+            words.append(word)
+        before = word
+    return shlex.join(words)
+
+
 def heading(title, command, repetitions):
     """First lines of a result: what, on which machine, of which commit, how."""
     m = machine.describe()
     caches = ", ".join(f"{name} {size}" for name, size in m["caches"].items())
     virtual = "" if m["virtual"] == "no" else f", virtual ({m['virtual']})"
-    busy = machine.load()
-    note = "" if busy < 0.5 + m["cores"] / 2 else " **The machine was busy with other work: figures are rough.**"
+    others = machine.load_of_others()
+    note = ("the machine was idle otherwise" if others < BUSY else
+            "**the machine was busy with other work: figures are rough**")
     return (f"# {title}\n\n"
             f"{m['processor']} (family {m['family']}, model {m['model']}), {m['cores']} cores{virtual}; {caches}; "
             f"{m['memory_gib']} GiB; {' '.join(m['flags'])}.\n"
             f"{m['compiler']}; {m['mpi']}. Commit {machine.commit()}.\n"
-            f"Command: `{command}`; repetitions: {repetitions}; load at the end {busy:.1f}.{note}\n\n")
+            f"Command: `{command}`; repetitions: {repetitions}; others used {others:.2f} cores meanwhile: {note}.\n\n")
 
 
 def write(folder, name, data, markdown):
@@ -60,7 +76,7 @@ def write(folder, name, data, markdown):
     os.makedirs(folder, exist_ok=True)
     paths = [os.path.join(folder, f"{name}.{kind}") for kind in ("json", "md")]
     with open(paths[0], "w") as file:
-        json.dump({"machine": machine.describe(), "commit": machine.commit(), "load": machine.load(), **data},
+        json.dump({"machine": machine.describe(), "commit": machine.commit(), "load_of_others": round(machine.load_of_others(), 3), **data},
                   file, indent=1)
         file.write("\n")
     with open(paths[1], "w") as file:

@@ -4,6 +4,7 @@ import os
 import re
 import shlex
 import subprocess
+import sys
 
 import cases
 import launch
@@ -18,10 +19,23 @@ class Case:
     """Settled soil, `copies` of 5,000 disks side by side, as files of both codes."""
 
     def __init__(self, size, copies, data, work):
+        self.size = size
         self.case = cases.Case(f"hiding-{size}", f"2D soil, {size} disks", steps=0, copies=(copies, 1), **cases.SOIL)
         self.inputs = cases.prepare(self.case, data, work)
         self.num_particles = self.inputs.num_particles
+        self.deck, self.settings = cases.deck(self.case), cases.settings(self.case, self.inputs)
         self.folder = os.path.join(work, self.case.name)
+
+
+def packings(given, work, barchan):
+    """The folder with soil2d-5k.csv: the given one, or one in the work folder, made where it is not there yet."""
+    if given:
+        return given
+    data = os.path.join(work, "packings")
+    if not os.path.exists(os.path.join(data, "soil2d-5k.csv")):
+        launch.run([sys.executable, os.path.join(HERE, "..", "peers", "make_packings"), "--only", "soil",
+                    "--out", data, "--barchan", barchan])
+    return data
 
 
 def starter(options, delay, program):
@@ -44,6 +58,18 @@ def run(command, cwd=None):
         raise launch.Failed(f"{shlex.join(command)}\nran into the limit of {SECONDS} s") from None
     if done.returncode != 0:
         raise launch.Failed(f"{shlex.join(command)}\nended with status {done.returncode}: {done.stdout.strip()[-500:]}")
+    return done.stdout
+
+
+def run_barchan(start, path, case, steps, *arguments):
+    """One run on a thread a rank. Returns (its run.json, what it said)."""
+    out = os.path.join(case.folder, "barchan.out")
+    command = [*start, path, "run", case.deck, "--out", out, "--force", "--threads", "1", "--steps", str(steps), *arguments]
+    for key, value in case.settings.items():
+        command += ["--set", f"{key}={value}"]
+    said = run(command)
+    with open(os.path.join(out, "run.json")) as file:
+        return json.load(file), said
 
 
 class Barchan:
@@ -52,15 +78,8 @@ class Barchan:
         self.label = f"{exchange}, {schedule}"
 
     def run(self, start, case, steps):
-        out = os.path.join(case.folder, "barchan.out")
-        command = [*start, self.path, "run", cases.deck(case.case), "--out", out, "--force", "--quiet", "--threads", "1",
-                   "--steps", str(steps), "--exchange", self.name]
-        command += ["--progress", "thread"] if self.schedule == "thread" else ["--schedule", self.schedule]
-        for key, value in cases.settings(case.case, case.inputs).items():
-            command += ["--set", f"{key}={value}"]
-        run(command)
-        with open(os.path.join(out, "run.json")) as file:
-            result = json.load(file)
+        how = ["--progress", "thread"] if self.schedule == "thread" else ["--schedule", self.schedule]
+        result, _ = run_barchan(start, self.path, case, steps, "--quiet", "--exchange", self.name, *how)
         times = result["communication"]
         per_step = 1e6 / max(1, result["steps"])
         work = sum(result["phases"][name] for name in ("forces", "bands", "search") if name in result["phases"])

@@ -68,7 +68,16 @@ def markdown(found):
             if of_size == size and program == "auto":
                 text += f"\n`auto`, {schedule}, took: {chosen(by_delay)}.\n"
         text += "\n"
-    return text + errors(found)
+    return text + others(found) + errors(found)
+
+
+def others(found):
+    """How idle the machine was in each measurement."""
+    cores = [m["others"] for m in found if "others" in m]
+    if not cores:
+        return ""
+    return (f"While a point was measured, others used {report.median(cores):.2f} cores in the median, at most {max(cores):.2f}; "
+            f"in {sum(c >= report.BUSY for c in cores)} of {len(cores)} measurements {report.BUSY} or more.\n\n")
 
 
 def errors(found):

@@ -51,7 +51,7 @@ class Pscw final : public SlotExchange {
       if (slot.handle() == MPI_WIN_NULL) return;
       const Side reader = opposite(key.side);
       if (neighbours().has(reader)) {
-        check(MPI_Win_start(groups_[index(reader)], 0, slot.handle()), "MPI_Win_start");
+        check(MPI_Win_start(groups_[index_of(reader)], 0, slot.handle()), "MPI_Win_start");
         check(MPI_Win_complete(slot.handle()), "MPI_Win_complete");
       }
       if (neighbours().has(key.side)) check(MPI_Win_wait(slot.handle()), "MPI_Win_wait");
@@ -65,7 +65,7 @@ class Pscw final : public SlotExchange {
   void post(const MessageKey& key, const MessageHeader& header) override {
     write_header(header, outbox(key));
     const Window& slot = window({key.lane, opposite(key.side), key.number});
-    check(MPI_Win_start(groups_[index(key.side)], 0, slot.handle()), "MPI_Win_start");
+    check(MPI_Win_start(groups_[index_of(key.side)], 0, slot.handle()), "MPI_Win_start");
     slot.put({outbox(key), header_bytes + header.bytes}, neighbours().rank(key.side), 0);
     check(MPI_Win_complete(slot.handle()), "MPI_Win_complete");
     ++num_posted_[index(key)];
@@ -114,13 +114,13 @@ class Pscw final : public SlotExchange {
     MPI_Group all = MPI_GROUP_NULL;
     const int rank = neighbours().rank(side);
     check(MPI_Comm_group(communicator().handle(), &all), "MPI_Comm_group");
-    check(MPI_Group_incl(all, 1, &rank, &groups_[index(side)]), "MPI_Group_incl");
+    check(MPI_Group_incl(all, 1, &rank, &groups_[index_of(side)]), "MPI_Group_incl");
     check(MPI_Group_free(&all), "MPI_Group_free");
   }
 
   void expose(const MessageKey& key) {
     if (!neighbours().has(key.side)) return;
-    check(MPI_Win_post(groups_[index(key.side)], 0, window(key).handle()), "MPI_Win_post");
+    check(MPI_Win_post(groups_[index_of(key.side)], 0, window(key).handle()), "MPI_Win_post");
   }
 
   Window& window(const MessageKey& key) {

@@ -28,7 +28,7 @@ class SharedMemory final : public SlotExchange {
     window_.lock_all();
     for (const Side side : {Side::Left, Side::Right}) {
       if (neighbours().has(side)) {
-        theirs_[index(side)] = window_.base_of(neighbours().rank(side));
+        theirs_[index_of(side)] = window_.base_of(neighbours().rank(side));
       }
     }
   }
@@ -45,7 +45,7 @@ class SharedMemory final : public SlotExchange {
   const std::byte* arrived(const MessageKey& key) override {
     const MessageKey at_sender =
         SlotLayout::at_receiver(key);  // the sender's name for it: the other side
-    std::byte* sender = theirs_[index(key.side)];
+    std::byte* sender = theirs_[index_of(key.side)];
     if (word(sender, at_sender).load(std::memory_order_acquire) < key.number) return nullptr;
     return sender + layout_.slot(at_sender);
   }

@@ -116,6 +116,7 @@ Json contract_of(const RunSummary& s) {
 
 void add_further(const RunSummary& s, Json& json) {
   json["interrupted"] = s.interrupted;
+  json["loop_steps"] = s.loop_steps;
   json["exchange_choice"] = choice_of(s.choice);
   json["phases_most"] = s.phases_most;
   json["title"] = s.title;

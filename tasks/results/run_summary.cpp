@@ -84,7 +84,7 @@ void add_numbers(const std::vector<std::string>& of_ranks, RunSummary& summary) 
 
 double RunSummary::particle_steps_per_second() const {
   return loop_seconds > 0.0
-             ? static_cast<double>(particles) * static_cast<double>(steps) / loop_seconds
+             ? static_cast<double>(particles) * static_cast<double>(loop_steps) / loop_seconds
              : 0.0;
 }
 
@@ -121,6 +121,7 @@ RunSummary summarize(Simulation& simulation, const std::string& deck,
                      mpi_library_version()};
   summary.particles = simulation.num_particles();
   summary.steps = simulation.step();
+  summary.loop_steps = simulation.timings().steps;
   summary.dt = model.time.step;
   summary.time = simulation.time();
   summary.skin = simulation.skin();

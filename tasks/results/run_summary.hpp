@@ -31,7 +31,8 @@ struct RunSummary {
   double dt = 0.0, time = 0.0;  ///< [s]
   double skin = 0.0;            ///< [m]
   std::optional<StepLimit> limit;
-  double loop_seconds = 0.0;  ///< of the slowest rank
+  double loop_seconds = 0.0;    ///< of the slowest rank
+  std::int64_t loop_steps = 0;  ///< that it took; fewer than `steps` after a restart
   std::int64_t rebuilds = 0, migrations = 0;
   double memory_bytes = 0.0;                               ///< all ranks
   std::map<std::string, double> phases;                    ///< seconds per rank, averaged

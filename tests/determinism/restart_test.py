@@ -74,6 +74,8 @@ def stop_and_go_on(command, expected):
     second = run(command, "stopped", 3, 1, "--restart", "auto")
     expect(second.returncode == 0, "the rest on three ranks: " + second.stderr)
     compare("stopped", expected, "ended at 1,234 steps, went on on three ranks")
+    numbers = json.loads(pathlib.Path("stopped/run.json").read_text())
+    expect(numbers["loop_steps"] == STEPS - 1234, f"steps of the loop after a restart: {numbers['loop_steps']}")
 
 
 def skip_damaged(command, expected):
