@@ -58,7 +58,8 @@ Rows run_rows(std::string_view text, const std::string& path) {
   Rows rows{
       {"deck", word(run, "deck")},
       {"particles", grouped(whole(run, "particles"))},
-      {"ranks", word(run, "ranks") + " × " + word(run, "threads") + " threads"},
+      {"ranks", fmt::format("{} × {} thread{}", word(run, "ranks"), word(run, "threads"),
+                            whole(run, "threads") == 1 ? "" : "s")},
       {"exchange",
        word(run, "exchange") + " (" + word(run, "transport") + "), " + word(run, "schedule")},
       {"steps", fmt::format("{} of {:g} s: {:.6g} s simulated", grouped(whole(run, "steps")),

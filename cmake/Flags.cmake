@@ -36,7 +36,7 @@ function(barchan_set_kernel_flags sources_variable)
       continue()
     elseif(BARCHAN_HAS_X86_KERNELS)
       set_source_files_properties(${wide} PROPERTIES
-        COMPILE_OPTIONS "${BARCHAN_KERNEL_FLAGS};${BARCHAN_${upper}_FLAGS}")
+        COMPILE_OPTIONS "${BARCHAN_KERNEL_FLAGS};${BARCHAN_${upper}_FLAGS}" SKIP_PRECOMPILE_HEADERS ON)
     else()
       list(REMOVE_ITEM sources ${wide})
     endif()

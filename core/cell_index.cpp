@@ -23,41 +23,55 @@ void CellIndex::index(const Grid<Dim>& grid, const ParticleStore<Dim>& store, Ro
 template <int Dim>
 void Neighbourhood<Dim>::collect(const Grid<Dim>& grid, const CellIndex& index, std::int64_t key,
                                  int first_offset, int last_offset, std::int64_t after_key) {
+  const int nz = grid.cells(Dim - 1);
+  const std::int64_t line = key / nz;
+  if (line != line_ || &index != index_) find_lines(grid, index, line, first_offset, last_offset);
   count = 0;
   sorted_ = true;
-  const int n0 = grid.cells(0), nz = grid.cells(Dim - 1), ny = Dim == 3 ? grid.cells(1) : 1;
-  const int z = static_cast<int>(key % nz);
-  const int y = Dim == 3 ? static_cast<int>(key / nz % ny) : 0;
-  const int x = static_cast<int>(key / grid.slab_size());
-  const int dy_max = Dim == 3 ? 1 : 0;
-  for (int dx = first_offset; dx <= last_offset; ++dx) {
-    int slab = x + dx;
-    if (slab < 0 || slab >= n0) {
-      if (!grid.is_periodic(0)) continue;
-      slab = (slab + n0) % n0;
-    }
-    if (!index.has_slab(slab)) continue;
-    for (int dy = -dy_max; dy <= dy_max; ++dy) {
-      int row = y + dy;
-      if (Dim == 3 && (row < 0 || row >= ny)) {
-        if (!grid.is_periodic(1)) continue;
-        row = (row + ny) % ny;
-      }
-      add_line(grid, index, (static_cast<std::int64_t>(slab) * ny + row) * nz, z, after_key);
-    }
-  }
+  wraps = is_narrow_;
+  const int z = static_cast<int>(key - line * nz);
+  for (int l = 0; l < num_lines_; ++l)
+    add_line(grid, index, lines_[static_cast<std::size_t>(l)], z, after_key);
   finish();
 }
 
 template <int Dim>
-void Neighbourhood<Dim>::add_line(const Grid<Dim>& grid, const CellIndex& index, std::int64_t line,
+void Neighbourhood<Dim>::find_lines(const Grid<Dim>& grid, const CellIndex& index,
+                                    std::int64_t line, int first_offset, int last_offset) {
+  line_ = line;
+  index_ = &index;
+  num_lines_ = 0;
+  // Where there are four or more, nearest images of particles in cells side by side are themselves.
+  is_narrow_ = false;
+  for (int k = 0; k < Dim; ++k)
+    is_narrow_ = is_narrow_ || (grid.is_periodic(k) && grid.cells(k) < 4);
+  const int n0 = grid.cells(0), nz = grid.cells(Dim - 1), ny = Dim == 3 ? grid.cells(1) : 1;
+  const int y = static_cast<int>(line % ny), x = static_cast<int>(line / ny);
+  const int dy_max = Dim == 3 ? 1 : 0;
+  for (int dx = first_offset; dx <= last_offset; ++dx) {
+    const int slab = grid.is_periodic(0) ? (x + dx + n0) % n0 : x + dx;
+    if (slab < 0 || slab >= n0 || !index.has_slab(slab)) continue;
+    for (int dy = -dy_max; dy <= dy_max; ++dy) {
+      const int row = Dim == 3 && grid.is_periodic(1) ? (y + dy + ny) % ny : y + dy;
+      if (row < 0 || row >= ny) continue;
+      lines_[static_cast<std::size_t>(num_lines_++)] = {
+          (static_cast<std::int64_t>(slab) * ny + row) * nz, slab != x + dx || row != y + dy};
+    }
+  }
+}
+
+template <int Dim>
+void Neighbourhood<Dim>::add_line(const Grid<Dim>& grid, const CellIndex& index, const Line& line,
                                   int z, std::int64_t after_key) {
   const int nz = grid.cells(Dim - 1);
   const auto clip = [&](int from, int to) {
-    const std::int64_t begin = std::max(line + from, after_key + 1), end = line + to;
-    if (begin < end) add(index.cells(begin, end));
+    const std::int64_t begin = std::max(line.key + from, after_key + 1), end = line.key + to;
+    if (begin >= end) return;
+    wraps = wraps || line.wraps;
+    add(index.cells(begin, end));
   };
   if (grid.is_periodic(Dim - 1) && (z == 0 || z == nz - 1)) {
+    wraps = true;
     if (nz <= 3) return clip(0, nz);
     if (z == 0) {
       clip(0, 2);

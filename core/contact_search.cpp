@@ -34,79 +34,93 @@ ContactSearch<Dim>::ContactSearch(const Grid<Dim>& grid, const ParticleStore<Dim
   job_.box = grid.box();
 }
 
+/// Appends the partners of row i that are within reach. Pairs of the list beyond `size` are any.
 template <int Dim>
-std::uint8_t ContactSearch<Dim>::law(std::int32_t i, std::int32_t j) const {
-  using Store = ParticleStore<Dim>;
-  const auto a = static_cast<std::size_t>(i), b = static_cast<std::size_t>(j);
-  if ((store_.flags[a] & store_.flags[b] & Store::kBonded) != 0 &&
-      rule_.bonded->contains(store_.id[a], store_.id[b])) {
-    return LawTable::kBonded;
-  }
-  return rule_.laws->code(store_.type[a], store_.type[b]);
+void ContactSearch<Dim>::scan(SearchJob& job, std::int32_t i, std::span<const Rows> partners,
+                              PairList& list, std::int64_t& size) const {
+  for (int c = 0; c < Dim; ++c) job.at[c] = store_.x(i)[c];
+  job.reach = store_.radius(i) + rule_.skin;
+  std::int64_t most = size + kBatch;
+  for (const Rows rows : partners) most += rows.end - rows.begin;
+  list.make_room(most);
+  std::int64_t end = size + rule_.kernel(job, partners.data(), static_cast<int>(partners.size()),
+                                         list.j.data() + size);
+  if ((store_.flags[static_cast<std::size_t>(i)] & ParticleStore<Dim>::kFixed) != 0)
+    end = leave_fixed_out(list, size, end);
+  std::fill(list.i.begin() + size, list.i.begin() + end, i);
+  set_laws(i, list, size, end);
+  size = end;
 }
 
 template <int Dim>
-void ContactSearch<Dim>::scan(std::int32_t i, Rows partners, PairList& list) const {
-  using Store = ParticleStore<Dim>;
-  constexpr std::int32_t kSlice = 1024;
-  SearchJob job = job_;
-  std::copy_n(store_.x(i), Dim, job.at);
-  job.reach = store_.radius(i) + rule_.skin;
-  const bool fixed = (store_.flags[static_cast<std::size_t>(i)] & Store::kFixed) != 0;
-  std::array<std::int32_t, kSlice + kBatch> found;
-  for (std::int32_t begin = partners.begin; begin < partners.end; begin += kSlice) {
-    const std::int32_t end = std::min(partners.end, begin + kSlice);
-    const int count = rule_.kernel(job, begin, end, found.data());
-    for (int q = 0; q < count; ++q) {
-      const std::int32_t j = found[static_cast<std::size_t>(q)];
-      if (fixed && (store_.flags[static_cast<std::size_t>(j)] & Store::kFixed) != 0) continue;
-      list.push(i, j, law(i, j));
-    }
+std::int64_t ContactSearch<Dim>::leave_fixed_out(PairList& list, std::int64_t begin,
+                                                 std::int64_t end) const {
+  const auto is_fixed = [this](std::int32_t j) {
+    return (store_.flags[static_cast<std::size_t>(j)] & ParticleStore<Dim>::kFixed) != 0;
+  };
+  return std::remove_if(list.j.begin() + begin, list.j.begin() + end, is_fixed) - list.j.begin();
+}
+
+template <int Dim>
+void ContactSearch<Dim>::set_laws(std::int32_t i, PairList& list, std::int64_t begin,
+                                  std::int64_t end) const {
+  const auto a = static_cast<std::size_t>(i);
+  const int type = store_.type[a];
+  const bool has_bond = (store_.flags[a] & ParticleStore<Dim>::kBonded) != 0;
+  for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
+    const auto b = static_cast<std::size_t>(list.j[k]);
+    const bool is_bonded = has_bond && (store_.flags[b] & ParticleStore<Dim>::kBonded) != 0 &&
+                           rule_.bonded->contains(store_.id[a], store_.id[b]);
+    list.code[k] = is_bonded ? LawTable::kBonded : rule_.laws->code(type, store_.type[b]);
   }
 }
 
 template <int Dim>
 void ContactSearch<Dim>::owned(const CellIndex& cells, Rows rows, PairList& list,
                                std::vector<std::int64_t>& row_begin) const {
-  std::int64_t last_key = -1;
+  const bool all_pairs = rule_.kind == ContactSearchKind::AllPairs;
+  std::int64_t last_key = -1, size = list.size();
   Neighbourhood<Dim> around;
+  around.count = 1;
+  around.ranges[0].end = store_.num_owned;
+  SearchJob job = job_;
+  job.wraps = grid_.box().any();
   for (std::int32_t i = rows.begin; i < rows.end; ++i) {
-    row_begin[static_cast<std::size_t>(i)] = list.size();
-    if (rule_.kind == ContactSearchKind::AllPairs) {
-      scan(i, {i + 1, store_.num_owned}, list);
-      continue;
-    }
+    row_begin[static_cast<std::size_t>(i)] = size;
     const std::int64_t key = store_.key[static_cast<std::size_t>(i)];
-    if (key != last_key) {
-      around.collect(grid_, cells, key, grid_.is_periodic(0) ? -1 : 0, 1, key);
+    if (!all_pairs && key != last_key) {
+      around.collect(grid_, cells, key, grid_.is_periodic(0) ? -1 : 0, 1, key - 1);
+      job.wraps = around.wraps;
       last_key = key;
     }
-    // The cells that follow this one along its line lie behind it in storage too.
-    Rows behind{i + 1, cells.cells(key, key + 1).end};
-    const bool joined = around.count > 0 && around.ranges[0].begin == behind.end;
-    if (joined) behind.end = around.ranges[0].end;
-    scan(i, behind, list);
-    for (int q = joined ? 1 : 0; q < around.count; ++q)
-      scan(i, around.ranges[static_cast<std::size_t>(q)], list);
+    around.ranges[0].begin = i + 1;  // its own cell is the lowest of them
+    scan(job, i, std::span(around.ranges.data(), static_cast<std::size_t>(around.count)), list,
+         size);
   }
+  list.shorten(size);
 }
 
 template <int Dim>
 void ContactSearch<Dim>::across(const CellIndex& lower, const CellIndex& higher,
                                 int lower_to_higher, PairList& list) const {
-  const std::int32_t begin = lower.start.front(), end = lower.start.back();
-  const Rows all{higher.start.front(), higher.start.back()};
+  const bool all_pairs = rule_.kind == ContactSearchKind::AllPairs;
+  std::int64_t last_key = -1, size = list.size();
   Neighbourhood<Dim> around;
-  for (std::int32_t i = begin; i < end; ++i) {
-    if (rule_.kind == ContactSearchKind::AllPairs) {
-      scan(i, all, list);
-      continue;
+  around.count = 1;
+  around.ranges[0] = {higher.start.front(), higher.start.back()};
+  SearchJob job = job_;
+  job.wraps = grid_.box().any();
+  for (std::int32_t i = lower.start.front(); i < lower.start.back(); ++i) {
+    const std::int64_t key = store_.key[static_cast<std::size_t>(i)];
+    if (!all_pairs && key != last_key) {
+      around.collect(grid_, higher, key, lower_to_higher, lower_to_higher, -1);
+      job.wraps = around.wraps;
+      last_key = key;
     }
-    around.collect(grid_, higher, store_.key[static_cast<std::size_t>(i)], lower_to_higher,
-                   lower_to_higher, -1);
-    for (int q = 0; q < around.count; ++q)
-      scan(i, around.ranges[static_cast<std::size_t>(q)], list);
+    scan(job, i, std::span(around.ranges.data(), static_cast<std::size_t>(around.count)), list,
+         size);
   }
+  list.shorten(size);
 }
 
 template void Planes::write(const ParticleStore<2>&, Rows);

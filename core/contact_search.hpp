@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <barchan/core/bonded_pairs.hpp>
@@ -55,8 +56,11 @@ class ContactSearch {
               PairList& list) const;
 
  private:
-  void scan(std::int32_t i, Rows partners, PairList& list) const;
-  [[nodiscard]] std::uint8_t law(std::int32_t i, std::int32_t j) const;
+  void scan(SearchJob& job, std::int32_t i, std::span<const Rows> partners, PairList& list,
+            std::int64_t& size) const;
+  void set_laws(std::int32_t i, PairList& list, std::int64_t begin, std::int64_t end) const;
+  [[nodiscard]] std::int64_t leave_fixed_out(PairList& list, std::int64_t begin,
+                                             std::int64_t end) const;
 
   const Grid<Dim>& grid_;
   const ParticleStore<Dim>& store_;

@@ -69,7 +69,8 @@ class Grid {
   void wrap(double* x) const {
     for (int a = 0; a < Dim; ++a) {
       if (box_.inverse[a] == 0.0) continue;
-      x[a] -= box_.length[a] * std::floor((x[a] - origin_[a]) * box_.inverse[a]);
+      const double boxes = (x[a] - origin_[a]) * box_.inverse[a];
+      if (!(boxes >= 0.0 && boxes < 1.0)) x[a] -= box_.length[a] * std::floor(boxes);
       if (x[a] >= origin_[a] + box_.length[a]) x[a] = origin_[a];
     }
   }

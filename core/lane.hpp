@@ -54,8 +54,9 @@ struct Band {
   CellIndex ghost_cells;
   Planes planes;  ///< of the higher ones of the pairs across
   PairList across;
-  std::vector<PairBlock> blocks;  ///< of `across`
-  double travel = 0.0;            ///< bound of how far ghosts have come since the last rebuild [m]
+  std::vector<PairBlock> blocks;        ///< of `across`
+  std::vector<PairBlock> inner_blocks;  ///< of the pairs within the band that wait for its ghosts
+  double travel = 0.0;  ///< bound of how far ghosts have come since the last rebuild [m]
 };
 
 /// Sums over a lane, added over lanes and ranks in any order.
@@ -94,15 +95,18 @@ struct SearchSeconds {
 ///   run_chunk(0) precedes finish_band(Left);
 ///   unpack_halo(side) precedes finish_band(side) precedes pack_halo(side) of the next step.
 ///
-/// Rows of a band whose ghosts come first in the canonical order wait for them: their pairs are
-/// computed with the chunks, kept (lists `HeldLow`, `HeldHigh`), and summed by finish_band after
-/// the ghosts' share. All other rows are summed and advanced in place, chunk by chunk.
+/// Rows of a band whose ghosts come first in the canonical order wait for them. Their pairs with
+/// rows that do not wait are computed with the chunks, kept (`HeldLow`, `HeldHigh`), and summed by
+/// finish_band after the ghosts' share; pairs within such a band (`InnerLow`, `InnerHigh`) are
+/// computed there. All other rows are summed and advanced in place, chunk by chunk.
 template <int Dim>
 class Lane {
  public:
   using Store = ParticleStore<Dim>;
   using L = Layout<Dim>;
-  enum ListName { HeldLow, Owned, HeldHigh, kNumLists };
+  enum ListName { HeldLow, Owned, HeldHigh, InnerLow, InnerHigh, kNumLists };
+  static constexpr std::array<ListName, kNumLists> kLists{HeldLow, Owned, HeldHigh, InnerLow,
+                                                          InnerHigh};
   enum Side { Left = 0, Right = 1 };
 
   explicit Lane(World<Dim>& world) : world_(&world) {}
@@ -233,8 +237,8 @@ class Lane {
   /// Largest squared displacement since the last rebuild that a step was computed with: before its
   /// drift.
   [[nodiscard]] double distance2_of_last_step() const;
-  [[nodiscard]] int direction_of(int slab) const;  ///< 0 here, 1 left, 2 right
-  static constexpr std::int8_t kGone = 3;          ///< as a direction: out of the domain
+  [[nodiscard]] int direction_of(std::int64_t key) const;  ///< 0 here, 1 left, 2 right
+  static constexpr std::int8_t kGone = 3;                  ///< as a direction: out of the domain
   [[nodiscard]] bool is_removed(std::int32_t row) const {
     return !removed_.empty() && std::binary_search(removed_.begin(), removed_.end(),
                                                    store_.id[static_cast<std::size_t>(row)]);
@@ -255,12 +259,18 @@ class Lane {
     return world_->kernels.narrow != nullptr && world_->search == ContactSearchKind::Cells;
   }
   void finish_rows(std::int32_t begin, std::int32_t end, bool has_extras);
+  void finish_sums(Side side);
   void replay(Rows rows);
   void compute_bonds(typename BondSet<Dim>::Group group);
   void unbind(std::int32_t bond);
   void research_owned();
   void research_across(Side side);
 
+  [[nodiscard]] bool waits(Side side) const {
+    return bands_[side].exists && bands_[side].ghosts_first;
+  }
+  [[nodiscard]] ListName list_of(std::int32_t low, std::int32_t high) const;
+  void part(ListName name, std::int64_t from);
   void cut_blocks();
   void plan_prefetch();
   void redirect(PairList& list) const;
@@ -273,10 +283,16 @@ class Lane {
     std::int64_t k = -1;
   };
   Slot slot(std::int32_t a, std::int32_t b);
+  Slot find_pair(PairList& list, std::pair<std::int32_t, std::int32_t> wanted) const;
   std::int32_t find_near(std::int32_t row, std::int64_t id) const;
   void place(std::int32_t a, std::int32_t b, const double* spring_a_to_b);
-  void collect_loose(std::array<Migration<Dim>, 2>& leaving, const std::vector<std::int8_t>& goes,
-                     const std::vector<std::int32_t>& number);
+  /// @param number  of every row that leaves, its place among the leavers
+  void collect_history(std::array<Migration<Dim>, 2>& leaving,
+                       std::span<const std::int32_t> number);
+  void keep_staying(const PairList& list, const PairBlock& block,
+                    std::array<Migration<Dim>, 2>& leaving, std::span<const std::int32_t> number);
+  void loosen(const PairList& list, std::int64_t k, std::array<std::int32_t, 2> ends, bool counts,
+              std::array<Migration<Dim>, 2>& leaving, std::span<const std::int32_t> number);
 
   World<Dim>* world_;
   StepFrame frame_;
@@ -306,12 +322,16 @@ class Lane {
     std::int32_t i = 0, j = 0;
     double spring[L::kSprings] = {};
   };
-  std::vector<KeptContact> kept_;  ///< sorted by (i, j)
+  std::vector<KeptContact> kept_;
 
-  static void keep(const PairList& list, std::int64_t k, std::vector<KeptContact>& to);
+  static KeptContact kept(const PairList& list, std::int64_t k, std::int32_t i, std::int32_t j) {
+    KeptContact c{i, j, {}};
+    for (int q = 0; q < L::kSprings; ++q) c.spring[q] = list.springs<Dim>(k)[q * kBatch];
+    return c;
+  }
   static void keep_springs(const PairList& list, std::vector<KeptContact>& to);
-  /// Springs of pairs that are in both; takes what it has passed from the front of `kept`.
-  void put_springs(PairList& list, std::span<const KeptContact>& kept) const;
+  /// Springs of pairs that are in both.
+  void put_springs(PairList& list, std::span<const KeptContact> kept) const;
 
   // between begin_rebuild and restore_history
   std::vector<std::int32_t> new_row_;  ///< of every source row; -1: left

@@ -33,50 +33,69 @@ void require_short_bonds(const Grid<Dim>& grid, const ParticleStore<Dim>& store,
 
 }  // namespace
 
+// Packed springs are taken from where they are: these lists have served.
 template <int Dim>
-void Lane<Dim>::collect_loose(std::array<Migration<Dim>, 2>& leaving,
-                              const std::vector<std::int8_t>& goes,
-                              const std::vector<std::int32_t>& number) {
-  unpack_history();
+void Lane<Dim>::collect_history(std::array<Migration<Dim>, 2>& leaving,
+                                std::span<const std::int32_t> number) {
   kept_.clear();
-  const auto loosen = [&](const PairList& list, bool counts) {
-    for (std::int64_t k = 0; k < list.size(); ++k) {
-      if (!list.template has_spring<Dim>(k)) continue;
-      const std::int32_t ends[2] = {list.i[static_cast<std::size_t>(k)],
-                                    list.j[static_cast<std::size_t>(k)]};
-      if (is_removed(ends[0]) || is_removed(ends[1])) continue;
-      if (counts) --imbalance_.contacts;
-      const auto leaves = [&](std::int32_t row) {
-        return store_.is_owned(row) && goes[static_cast<std::size_t>(row)] != 0;
-      };
-      const bool both_stay = store_.is_owned(ends[0]) && store_.is_owned(ends[1]) &&
-                             !leaves(ends[0]) && !leaves(ends[1]);
-      if (both_stay) {
-        keep(list, k, kept_);
-        continue;
-      }
-      for (int e = 0; e < 2; ++e) {
-        if (!store_.is_owned(ends[e])) continue;
-        const auto own = static_cast<std::size_t>(ends[e]);
-        if (goes[own] == kGone) continue;
-        LooseContact<Dim> c{ends[e], store_.id[static_cast<std::size_t>(ends[1 - e])], {}};
-        for (int q = 0; q < L::kSprings; ++q) {
-          const double s = list.template springs<Dim>(k)[q * kBatch];
-          c.spring[q] = Dim == 3 && e == 1 ? -s : s;
-        }
-        if (goes[own] == 0) {
-          loose_.push_back(c);
-        } else {
-          c.handle = number[own];
-          leaving[static_cast<std::size_t>(goes[own] - 1)].contacts.push_back(c);
-        }
-      }
-    }
-  };
-  for (const PairList& list : lists_) loosen(list, true);
+  for (const Block& block : blocks_)
+    keep_staying(lists_[static_cast<std::size_t>(block.list)], block, leaving, number);
+  for (const Side side : {Left, Right}) {
+    for (const PairBlock& block : bands_[side].inner_blocks)
+      keep_staying(lists_[side == Left ? InnerLow : InnerHigh], block, leaving, number);
+  }
+  imbalance_.contacts -= static_cast<std::int64_t>(kept_.size());
   if (kept_.capacity() > kept_.size() + kept_.size() / 2) kept_.shrink_to_fit();
   for (const Side side : {Left, Right}) {
-    if (bands_[side].exists) loosen(bands_[side].across, side == Left);
+    const PairList& list = bands_[side].across;
+    for (const PairBlock& block : bands_[side].blocks) {
+      block.for_each_worked_on(list, [&](std::size_t k, std::int32_t low, std::int32_t high) {
+        loosen(list, static_cast<std::int64_t>(k), {low, high}, side == Left, leaving, number);
+      });
+    }
+  }
+}
+
+/// Pairs of two that stay are the rule, and nobody can foretell which near pairs have a spring.
+template <int Dim>
+void Lane<Dim>::keep_staying(const PairList& list, const PairBlock& block,
+                             std::array<Migration<Dim>, 2>& leaving,
+                             std::span<const std::int32_t> number) {
+  const auto stays = [this](std::int32_t row) {
+    return store_.is_owned(row) && goes_[static_cast<std::size_t>(row)] == 0;
+  };
+  std::size_t count = kept_.size();
+  kept_.resize(count + static_cast<std::size_t>(block.end - block.begin));
+  block.for_each_worked_on(list, [&](std::size_t at, std::int32_t low, std::int32_t high) {
+    const auto k = static_cast<std::int64_t>(at);
+    if (!stays(low) || !stays(high)) return loosen(list, k, {low, high}, true, leaving, number);
+    kept_[count] = kept(list, k, low, high);
+    count += list.template has_spring<Dim>(k) ? 1 : 0;
+  });
+  kept_.resize(count);
+}
+
+template <int Dim>
+void Lane<Dim>::loosen(const PairList& list, std::int64_t k, std::array<std::int32_t, 2> ends,
+                       bool counts, std::array<Migration<Dim>, 2>& leaving,
+                       std::span<const std::int32_t> number) {
+  if (!list.template has_spring<Dim>(k) || is_removed(ends[0]) || is_removed(ends[1])) return;
+  if (counts) --imbalance_.contacts;
+  for (std::size_t e = 0; e < 2; ++e) {
+    if (!store_.is_owned(ends[e])) continue;
+    const auto own = static_cast<std::size_t>(ends[e]);
+    if (goes_[own] == kGone) continue;
+    LooseContact<Dim> c{ends[e], store_.id[static_cast<std::size_t>(ends[1 - e])], {}};
+    for (int q = 0; q < L::kSprings; ++q) {
+      const double s = list.template springs<Dim>(k)[q * kBatch];
+      c.spring[q] = Dim == 3 && e == 1 ? -s : s;
+    }
+    if (goes_[own] == 0) {
+      loose_.push_back(c);
+    } else {
+      c.handle = number[own];
+      leaving[static_cast<std::size_t>(goes_[own] - 1)].contacts.push_back(c);
+    }
   }
 }
 
@@ -84,20 +103,23 @@ template <int Dim>
 typename Lane<Dim>::Slot Lane<Dim>::slot(std::int32_t a, std::int32_t b) {
   if (store_.is_owned(a) && store_.is_owned(b)) {
     const std::int32_t low = std::min(a, b), high = std::max(a, b);
-    const std::int64_t begin = row_begin_[static_cast<std::size_t>(low)];
-    for (PairList& list : lists_) {
-      for (std::int64_t k = begin; k < list.size() && list.i[static_cast<std::size_t>(k)] == low;
-           ++k) {
-        if (list.j[static_cast<std::size_t>(k)] == high) return {&list, k};
-      }
+    const ListName name = list_of(low, high);
+    PairList& list = lists_[name];
+    if (name == HeldLow || name == HeldHigh) return find_pair(list, {low, high});
+    for (std::int64_t k = row_begin_[static_cast<std::size_t>(low)];
+         k < list.size() && list.i[static_cast<std::size_t>(k)] == low; ++k) {
+      if (list.j[static_cast<std::size_t>(k)] == high) return {&list, k};
     }
     return {};
   }
   const std::int32_t ghost = store_.is_owned(a) ? b : a, own = store_.is_owned(a) ? a : b;
   Band& band = bands_[ghost < store_.ghost_begin(Right) ? Left : Right];
-  const std::pair<std::int32_t, std::int32_t> wanted =
-      band.ghosts_first ? std::pair(ghost, own) : std::pair(own, ghost);
-  PairList& list = band.across;
+  return find_pair(band.across, band.ghosts_first ? std::pair(ghost, own) : std::pair(own, ghost));
+}
+
+template <int Dim>
+typename Lane<Dim>::Slot Lane<Dim>::find_pair(PairList& list,
+                                              std::pair<std::int32_t, std::int32_t> wanted) const {
   std::int64_t low = 0, high = list.size();
   while (low < high && list.i[static_cast<std::size_t>(high - 1)] == store_.waste()) --high;
   while (low < high) {
@@ -146,15 +168,6 @@ void Lane<Dim>::place(std::int32_t a, std::int32_t b, const double* spring) {
   const bool swapped = at.list->i[static_cast<std::size_t>(at.k)] != a;
   for (int c = 0; c < L::kSprings; ++c)
     at.list->template springs<Dim>(at.k)[c * kBatch] = Dim == 3 && swapped ? -spring[c] : spring[c];
-}
-
-template <int Dim>
-void Lane<Dim>::keep(const PairList& list, std::int64_t k, std::vector<KeptContact>& to) {
-  const auto at = static_cast<std::size_t>(k);
-  KeptContact& c = to.emplace_back();
-  c.i = list.i[at];
-  c.j = list.j[at];
-  for (int q = 0; q < L::kSprings; ++q) c.spring[q] = list.template springs<Dim>(k)[q * kBatch];
 }
 
 template <int Dim>

@@ -6,6 +6,19 @@
 // Candidate lists of a lane, and the blocks in which the step walks over them.
 
 namespace barchan {
+namespace {
+
+std::vector<PairBlock> blocks_of(const PairList& list) {
+  std::vector<PairBlock> blocks;
+  for (std::int64_t k = 0; k < list.size(); k += kBlockPairs) {
+    PairBlock& block = blocks.emplace_back();
+    block.begin = k, block.end = std::min(k + kBlockPairs, list.size());
+  }
+  return blocks;
+}
+
+}  // namespace
+
 template <int Dim>
 void Lane<Dim>::list_bonded() {
   bonded_.clear();
@@ -33,33 +46,68 @@ void Lane<Dim>::find_owned() {
   const std::int64_t slab_size = world_->grid.slab_size();
   bands_[Left].rows = {0, bands_[Left].exists ? cells_.first_row(slab_begin_ + 1, slab_size) : 0};
   bands_[Right].rows = {bands_[Right].exists ? cells_.first_row(slab_end_ - 1, slab_size) : n, n};
-  const bool held_low = bands_[Left].exists && bands_[Left].ghosts_first;
-  const bool held_high = bands_[Right].exists && bands_[Right].ghosts_first;
-  const std::int32_t low = held_low ? bands_[Left].rows.end : 0;
+  // Pairs that wait, or are waited for, are those of the rows before `low` and from `high` on.
+  const std::int32_t low = waits(Left) ? bands_[Left].rows.end : 0;
   const std::int32_t high =
-      held_high ? std::max(low, cells_.first_row(slab_end_ - 2, slab_size)) : n;
+      waits(Right) ? std::max(low, cells_.first_row(slab_end_ - 2, slab_size)) : n;
 
   planes_.write(store_, {0, n});
   const ContactSearch<Dim> search(world_->grid, store_, planes_, search_rule());
-  const Rows parts[kNumLists] = {{0, low}, {low, high}, {high, n}};
-  row_begin_.resize(static_cast<std::size_t>(n) + 1);
-  for (int l = 0; l < kNumLists; ++l) {
-    PairList& list = lists_[static_cast<std::size_t>(l)];
-    list.clear();
-    search.owned(cells_, parts[l], list, row_begin_);
+  row_begin_.resize(static_cast<std::size_t>(n));
+  for (PairList& list : lists_) list.clear();
+  search.owned(cells_, {0, low}, lists_[HeldLow], row_begin_);
+  part(HeldLow, 0);
+  search.owned(cells_, {low, high}, lists_[Owned], row_begin_);
+  const std::int64_t from = lists_[Owned].size();
+  search.owned(cells_, {high, n}, lists_[Owned], row_begin_);
+  part(Owned, from);
+  for (const ListName name : kLists) {
+    PairList& list = lists_[name];
     list.pad(store_.waste());
     list.trim();
     list.template reset_springs<Dim>();
-    if (l != Owned) redirect(list);
+    if (name == HeldLow || name == HeldHigh) redirect(list);
   }
   cut_blocks();
+}
+
+/// The list of a pair of owned rows, the lower one first.
+template <int Dim>
+typename Lane<Dim>::ListName Lane<Dim>::list_of(std::int32_t low, std::int32_t high) const {
+  const std::int32_t first = bands_[Left].rows.end, last = bands_[Right].rows.begin;
+  if (waits(Left) && low < first) return high < first ? InnerLow : HeldLow;
+  if (waits(Right) && high >= last) return low < last ? HeldHigh : InnerHigh;
+  return Owned;
+}
+
+/// Moves pairs [from, end) of a list to where they belong; every list stays sorted.
+template <int Dim>
+void Lane<Dim>::part(ListName name, std::int64_t from) {
+  PairList& list = lists_[name];
+  const std::int64_t end = list.size();
+  std::int64_t stays = from;
+  std::int32_t row = -1;
+  for (std::int64_t k = from; k < end; ++k) {
+    const auto at = static_cast<std::size_t>(k);
+    const std::int32_t i = list.i[at], j = list.j[at];
+    const ListName to = list_of(i, j);
+    const std::int64_t place = to == name ? stays : lists_[to].size();
+    if (to == name)
+      list.copy(k, stays++);
+    else
+      lists_[to].push(i, j, list.code[at]);
+    if (i == row || to == HeldLow || to == HeldHigh) continue;
+    row_begin_[static_cast<std::size_t>(i)] = place;
+    row = i;
+  }
+  list.shorten(stays);
 }
 
 template <int Dim>
 void Lane<Dim>::redirect(PairList& list) const {
   const auto held = [this](std::int32_t i) {
-    return (bands_[Left].ghosts_first && i < bands_[Left].rows.end) ||
-           (bands_[Right].ghosts_first && i >= bands_[Right].rows.begin);
+    return (waits(Left) && i < bands_[Left].rows.end) ||
+           (waits(Right) && i >= bands_[Right].rows.begin);
   };
   resize_with_room(list.result, list.i.size() * L::kForce);
   for (std::size_t k = 0; k < list.i.size(); ++k) {
@@ -72,32 +120,29 @@ template <int Dim>
 void Lane<Dim>::cut_blocks() {
   blocks_.clear();
   travel_ = 0.0;
-  const std::int32_t first = bands_[Left].rows.end, last = bands_[Right].rows.begin;
   if (packs()) {
     for (PairList& list : lists_) list.prepare_packing();
   }
-  for (int l = 0; l < kNumLists; ++l) {
-    const PairList& list = lists_[static_cast<std::size_t>(l)];
+  // Rows are complete once all before the next pair's first row are done, in this list and in those
+  // after it.
+  const std::int32_t first = bands_[Left].rows.end, last = bands_[Right].rows.begin;
+  for (const ListName name : {HeldLow, Owned, HeldHigh}) {
+    const PairList& list = lists_[name];
+    const std::int32_t held = lists_[HeldHigh].size() > 0 ? lists_[HeldHigh].i[0] : last;
+    const std::int32_t most = name == HeldLow ? first : name == Owned ? held : last;
     for (std::int64_t k = 0; k < list.size(); k += kBlockPairs) {
-      const std::int64_t end = std::min(k + kBlockPairs, list.size());
-      // Rows before the next pair's first row are complete; the waste row pads, and comes last.
-      const std::int32_t next =
-          end < list.size() ? std::min(list.i[static_cast<std::size_t>(end)], last) : first;
       Block& block = blocks_.emplace_back();
-      block.list = l, block.begin = k, block.end = end, block.final_row = next;
+      block.list = name, block.begin = k, block.end = std::min(k + kBlockPairs, list.size());
+      block.final_row =
+          block.end < list.size() ? list.i[static_cast<std::size_t>(block.end)] : most;
+      block.final_row = std::clamp(block.final_row, first, std::max(first, most));
     }
-  }
-  // After its last list a row has all it gets here; lists follow one another in row order.
-  std::int32_t done = last;
-  for (auto block = blocks_.rbegin(); block != blocks_.rend(); ++block) {
-    const PairList& list = lists_[static_cast<std::size_t>(block->list)];
-    if (block->end == list.size()) block->final_row = std::max(first, done);
-    done = std::min(done, std::min(list.i[static_cast<std::size_t>(block->begin)], last));
   }
   if (blocks_.empty() || blocks_.back().final_row < last)
     blocks_.emplace_back(), blocks_.back().list = Owned, blocks_.back().final_row = last;
-  for (Block& block : blocks_) block.final_row = std::clamp(block.final_row, first, last);
   chunks_ = {0, static_cast<int>(blocks_.size())};
+  bands_[Left].inner_blocks = blocks_of(lists_[InnerLow]);
+  bands_[Right].inner_blocks = blocks_of(lists_[InnerHigh]);
   if (packs()) plan_prefetch();
 }
 
@@ -173,11 +218,7 @@ void Lane<Dim>::list_across(Side side) {
   band.across.result.resize(band.returns ? band.across.i.size() * L::kForce : 0);
   if (packs()) band.across.prepare_packing();
   band.travel = 0.0;
-  band.blocks.clear();
-  for (std::int64_t k = 0; k < band.across.size(); k += kBlockPairs) {
-    PairBlock& block = band.blocks.emplace_back();
-    block.begin = k, block.end = std::min(k + kBlockPairs, band.across.size());
-  }
+  band.blocks = blocks_of(band.across);
 }
 
 template <int Dim>
@@ -185,10 +226,13 @@ void Lane<Dim>::research_owned() {
   const Stopwatch watch(search_seconds_.chunks);
   kept_.clear();
   for (const PairList& list : lists_) keep_springs(list, kept_);
+  const auto precedes = [](const KeptContact& p, const KeptContact& q) {
+    return std::pair(p.i, p.j) < std::pair(q.i, q.j);
+  };
+  std::sort(kept_.begin(), kept_.end(), precedes);
   find_owned();
   cut_chunks(std::int64_t{1} << 60);
-  std::span<const KeptContact> kept(kept_);
-  for (PairList& list : lists_) put_springs(list, kept);
+  for (PairList& list : lists_) put_springs(list, kept_);
 }
 
 template <int Dim>
@@ -198,19 +242,19 @@ void Lane<Dim>::research_across(Side side) {
   std::vector<KeptContact> before;  // of its own: the other band may be at it too
   keep_springs(list, before);
   list_across(side);
-  std::span<const KeptContact> kept(before);
-  put_springs(list, kept);
+  put_springs(list, before);
 }
 
 template <int Dim>
 void Lane<Dim>::keep_springs(const PairList& list, std::vector<KeptContact>& to) {
   for (std::int64_t k = 0; k < list.size(); ++k) {
-    if (list.template has_spring<Dim>(k)) keep(list, k, to);
+    const auto at = static_cast<std::size_t>(k);
+    if (list.template has_spring<Dim>(k)) to.push_back(kept(list, k, list.i[at], list.j[at]));
   }
 }
 
 template <int Dim>
-void Lane<Dim>::put_springs(PairList& list, std::span<const KeptContact>& kept) const {
+void Lane<Dim>::put_springs(PairList& list, std::span<const KeptContact> kept) const {
   for (std::int64_t k = 0; k < list.size() && !kept.empty(); ++k) {
     const auto at = static_cast<std::size_t>(k);
     if (list.i[at] == store_.waste()) break;  // padding

@@ -41,8 +41,10 @@ void write_row(ParticleStore<Dim>& s, std::int32_t row, const ParticleRecord<Dim
 }  // namespace
 
 template <int Dim>
-int Lane<Dim>::direction_of(int slab) const {
-  if (slab >= slab_begin_ && slab < slab_end_) return 0;
+int Lane<Dim>::direction_of(std::int64_t key) const {
+  const std::int64_t slab_size = world_->grid.slab_size();
+  if (key >= slab_begin_ * slab_size && key < slab_end_ * slab_size) return 0;
+  const int slab = static_cast<int>(key / slab_size);
   if (!bands_[Left].exists || !bands_[Right].exists) return bands_[Right].exists ? 2 : 1;
   if (!world_->grid.is_periodic(0)) return slab >= slab_end_ ? 2 : 1;
   // The shorter way round; the cuts move by less than a strip at a time.
@@ -83,8 +85,7 @@ void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byt
     world_->grid.wrap(store_.x(i));
     const auto at = static_cast<std::size_t>(i);
     store_.key[at] = world_->grid.key(store_.x(i));
-    goes_[at] = static_cast<std::int8_t>(
-        direction_of(static_cast<int>(store_.key[at] / world_->grid.slab_size())));
+    goes_[at] = static_cast<std::int8_t>(direction_of(store_.key[at]));
     if (is_removed(i) || loses(Loss::Particle)) goes_[at] = kGone;
     if (goes_[at] == 0 || goes_[at] == kGone) continue;
     auto& leavers = out[static_cast<std::size_t>(goes_[at] - 1)].particles;
@@ -93,7 +94,7 @@ void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byt
   }
 
   loose_.clear();
-  collect_loose(out, goes_, number);
+  collect_history(out, number);
   old_walls_.clear();
   for (const WallContact<Dim>& c : walls_.list()) {
     const auto at = static_cast<std::size_t>(c.row);
@@ -202,9 +203,10 @@ void Lane<Dim>::order() {
   store_.resize_for_ghosts();
   cells_.index(world_->grid, store_, {0, stays}, slab_begin_, slab_end_);
   resize_with_room(store_.reference, static_cast<std::size_t>(stays) * Dim);
-  for (std::int32_t i = 0; i < stays; ++i)
-    std::copy_n(store_.x(i), Dim,
-                store_.reference.data() + std::size_t{Dim} * static_cast<std::size_t>(i));
+  double* reference = store_.reference.data();
+  for (std::int32_t i = 0; i < stays; ++i) {
+    for (int c = 0; c < Dim; ++c) *reference++ = store_.x(i)[c];
+  }
   list_bonded();
 }
 

@@ -74,7 +74,7 @@ void Lane<Dim>::finish_right_band(std::span<const double> results) {
     for (int c = 0; c < Dim; ++c) row[c] = band.ghosts_first ? row[c] - f[c] : row[c] + f[c];
     for (int c = L::kTorque; c < L::kTorque + kSpins<Dim>; ++c) row[c] += f[c];
   }
-  if (band.ghosts_first) replay(band.rows);
+  finish_sums(Right);
   bonds_.import_group(BondSet<Dim>::Right, store_, f);
   finish_rows(band.rows.begin, band.rows.end, true);
 }

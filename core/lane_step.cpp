@@ -166,8 +166,20 @@ void Lane<Dim>::finish_band(Side side) {
   // in the same step.
   if (!bonds_.empty()) compute_bonds(side == Left ? BondSet<Dim>::Left : BondSet<Dim>::Right);
   for (PairBlock& block : band.blocks) run_pairs(band.across, block, 0.5 * (travel_ + band.travel));
-  if (band.ghosts_first) replay(band.rows);
+  finish_sums(side);
   finish_rows(band.rows.begin, band.rows.end, true);
+}
+
+/// What comes after ghosts that come first: in canonical order, pairs with rows before the band,
+/// within it, behind it.
+template <int Dim>
+void Lane<Dim>::finish_sums(Side side) {
+  if (!waits(side)) return;
+  Band& band = bands_[side];
+  if (side == Right) replay(band.rows);
+  PairList& inner = lists_[side == Left ? InnerLow : InnerHigh];
+  for (PairBlock& block : band.inner_blocks) run_pairs(inner, block, travel_);
+  if (side == Left) replay(band.rows);
 }
 
 template <int Dim>
@@ -175,7 +187,7 @@ void Lane<Dim>::replay(Rows rows) {
   const auto is_in = [rows](std::int32_t row) { return row >= rows.begin && row < rows.end; };
   for (const Block& block : blocks_) {
     const PairList& list = lists_[static_cast<std::size_t>(block.list)];
-    if (list.result.empty()) continue;
+    if (block.list == Owned) continue;
     block.for_each_worked_on(list, [&](std::size_t k, std::int32_t i, std::int32_t j) {
       const double* f = list.result.data() + k * L::kForce;
       if (is_in(i)) {

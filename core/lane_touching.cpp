@@ -162,7 +162,11 @@ void Lane<Dim>::pack(PairList& list, PairBlock& block, const std::uint8_t* masks
 template <int Dim>
 void Lane<Dim>::unpack_history() {
   for (Block& block : blocks_) unpack<Dim>(lists_[static_cast<std::size_t>(block.list)], block);
-  for (const Side side : {Left, Right}) unpack_history_across(side);
+  for (const Side side : {Left, Right}) {
+    for (PairBlock& block : bands_[side].inner_blocks)
+      unpack<Dim>(lists_[side == Left ? InnerLow : InnerHigh], block);
+    unpack_history_across(side);
+  }
 }
 
 template <int Dim>

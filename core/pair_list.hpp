@@ -38,6 +38,23 @@ struct PairList {
     j.push_back(b);
     code.push_back(law);
   }
+  void copy(std::int64_t from, std::int64_t to) {
+    const auto k = static_cast<std::size_t>(from), at = static_cast<std::size_t>(to);
+    i[at] = i[k];
+    j[at] = j[k];
+    code[at] = code[k];
+  }
+  /// Makes it at least n long, with pairs that are any.
+  void make_room(std::int64_t n) {
+    if (n <= size()) return;
+    const auto room = std::max(static_cast<std::size_t>(n + n / 2), i.capacity());
+    for (auto* column : {&i, &j}) column->resize(room);
+    code.resize(room);
+  }
+  void shorten(std::int64_t n) {
+    for (auto* column : {&i, &j}) column->resize(static_cast<std::size_t>(n));
+    code.resize(static_cast<std::size_t>(n));
+  }
   void prepare_packing() {
     for (auto* column : {&packed_i, &packed_j}) resize_with_room(*column, i.size());
     for (auto* column : {&packed_row_i, &packed_row_j}) resize_with_room(*column, row_i.size());
@@ -82,7 +99,7 @@ struct PairList {
   [[nodiscard]] bool has_spring(std::int64_t k) const {
     const double* s = springs<Dim>(k);
     if constexpr (Dim == 2) return s[0] != 0.0;
-    return s[0] != 0.0 || s[kBatch] != 0.0 || s[2 * kBatch] != 0.0;
+    return ((s[0] != 0.0) | (s[kBatch] != 0.0) | (s[2 * kBatch] != 0.0)) != 0;
   }
   [[nodiscard]] std::size_t bytes() const {
     return 4 * (i.capacity() + j.capacity() + row_i.capacity() + row_j.capacity() +

@@ -299,8 +299,7 @@ void Simulation::EngineOf<Dim>::watch_growth() {
       };
     };
     std::size_t candidates = 0;
-    for (const auto list : {Lane<Dim>::HeldLow, Lane<Dim>::Owned, Lane<Dim>::HeldHigh})
-      candidates += lane.list(list).i.capacity();
+    for (const auto list : Lane<Dim>::kLists) candidates += lane.list(list).i.capacity();
     for (const auto side : {Lane<Dim>::Left, Lane<Dim>::Right})
       candidates += lane.band(side).across.i.capacity();
     tell(lane.store().id.capacity(), true, named("rows of particles and ghosts"));

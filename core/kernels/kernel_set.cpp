@@ -42,39 +42,24 @@ VectorWidth vector_width(const std::string& name) {
 
 namespace {
 
-PairKernel pick_pairs(int dim, VectorWidth width, int variant) {
-#ifdef BARCHAN_HAS_X86_KERNELS
-  if (width == VectorWidth::Avx512) return kernels::pick_avx512(dim, variant);
-  if (width == VectorWidth::Avx2) return kernels::pick_avx2(dim, variant);
-#endif
-  (void)width;
-  return kernels::pick_scalar(dim, variant);
-}
+/// Who picks the kernels of one width.
+struct Pickers {
+  PairKernel (*pairs)(int dim, int variant);
+  NarrowKernel (*narrow)(int dim, bool periodic);
+  SearchKernel (*search)(int dim);
+  RowKernel (*rows)(int dim, bool damped);
+};
 
-NarrowKernel pick_narrow(int dim, VectorWidth width, bool periodic) {
+Pickers pickers_of(VectorWidth width) {
+  using namespace kernels;
 #ifdef BARCHAN_HAS_X86_KERNELS
-  if (width == VectorWidth::Avx512) return kernels::pick_narrow_avx512(dim, periodic);
-  if (width == VectorWidth::Avx2) return kernels::pick_narrow_avx2(dim, periodic);
+  if (width == VectorWidth::Avx512)
+    return {pick_avx512, pick_narrow_avx512, pick_search_avx512, pick_rows_avx2};
+  if (width == VectorWidth::Avx2)
+    return {pick_avx2, pick_narrow_avx2, pick_search_avx2, pick_rows_avx2};
 #endif
   (void)width;
-  return kernels::pick_narrow_scalar(dim, periodic);
-}
-
-SearchKernel pick_search_kernel(int dim, VectorWidth width, bool periodic) {
-#ifdef BARCHAN_HAS_X86_KERNELS
-  if (width == VectorWidth::Avx512) return kernels::pick_search_avx512(dim, periodic);
-  if (width == VectorWidth::Avx2) return kernels::pick_search_avx2(dim, periodic);
-#endif
-  (void)width;
-  return kernels::pick_search_scalar(dim, periodic);
-}
-
-RowKernel pick_row_kernel(int dim, VectorWidth width, bool damped) {
-#ifdef BARCHAN_HAS_X86_KERNELS
-  if (width != VectorWidth::Scalar) return kernels::pick_rows_avx2(dim, damped);
-#endif
-  (void)width;
-  return kernels::pick_rows_scalar(dim, damped);
+  return {pick_scalar, pick_narrow_scalar, pick_search_scalar, pick_rows_scalar};
 }
 
 }  // namespace
@@ -84,15 +69,15 @@ KernelSet make_kernels(int dim, VectorWidth width, const LawTable& laws, bool ha
   int variant = static_cast<int>(laws.damping());
   if (box.any()) variant |= kernels::kPeriodic;
   if (laws.size() == 2 && !has_bonds) variant |= kernels::kOneLaw;
+  const Pickers pick = pickers_of(width);
   // In 2D almost every candidate of a packing touches; in 3D about half do.
-  const NarrowKernel narrow = dim == 3 ? pick_narrow(dim, width, box.any()) : nullptr;
   return {width,
-          pick_pairs(dim, width, variant),
-          pick_pairs(dim, width, variant | kernels::kKeep),
-          narrow,
-          pick_search_kernel(dim, width, box.any()),
-          pick_row_kernel(dim, width, false),
-          pick_row_kernel(dim, width, true)};
+          pick.pairs(dim, variant),
+          pick.pairs(dim, variant | kernels::kKeep),
+          dim == 3 ? pick.narrow(dim, box.any()) : nullptr,
+          pick.search(dim),
+          pick.rows(dim, false),
+          pick.rows(dim, true)};
 }
 
 }  // namespace barchan

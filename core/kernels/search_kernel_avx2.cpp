@@ -3,8 +3,8 @@
 
 namespace barchan::kernels {
 
-SearchKernel pick_search_avx2(int dim, bool periodic) {
-  return pick_search<simd::Avx2>(dim, periodic);
+SearchKernel pick_search_avx2(int dim) {
+  return pick_search<simd::Avx2>(dim);
 }
 
 }  // namespace barchan::kernels

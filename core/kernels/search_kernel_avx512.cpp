@@ -3,8 +3,8 @@
 
 namespace barchan::kernels {
 
-SearchKernel pick_search_avx512(int dim, bool periodic) {
-  return pick_search<simd::Avx512>(dim, periodic);
+SearchKernel pick_search_avx512(int dim) {
+  return pick_search<simd::Avx512>(dim);
 }
 
 }  // namespace barchan::kernels

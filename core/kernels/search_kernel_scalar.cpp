@@ -3,8 +3,8 @@
 
 namespace barchan::kernels {
 
-SearchKernel pick_search_scalar(int dim, bool periodic) {
-  return pick_search<simd::Scalar>(dim, periodic);
+SearchKernel pick_search_scalar(int dim) {
+  return pick_search<simd::Scalar>(dim);
 }
 
 }  // namespace barchan::kernels

@@ -31,6 +31,14 @@ struct Avx2 {
   }
   BARCHAN_INLINE bool any(Mask m) { return _mm256_movemask_pd(m) != 0; }
   BARCHAN_INLINE unsigned bits(Mask m) { return static_cast<unsigned>(_mm256_movemask_pd(m)); }
+  BARCHAN_INLINE int write_set(unsigned bits, int first, int* to) {
+    int count = 0;
+    for (int q = 0; q < kWidth; ++q) {
+      to[count] = first + q;
+      count += static_cast<int>(bits >> q & 1U);
+    }
+    return count;
+  }
 
   BARCHAN_INLINE Real load_unaligned(const double* p) { return Real(_mm256_loadu_pd(p)); }
   BARCHAN_INLINE Real load(const double* p) { return Real(_mm256_load_pd(p)); }

@@ -30,6 +30,13 @@ struct Avx512 {
   }
   BARCHAN_INLINE bool any(Mask m) { return m.bits != 0; }
   BARCHAN_INLINE unsigned bits(Mask m) { return m.bits; }
+  BARCHAN_INLINE int write_set(unsigned bits, int first, int* to) {
+    const __m256i all =
+        _mm256_add_epi32(_mm256_set1_epi32(first), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
+                        _mm256_maskz_compress_epi32(static_cast<__mmask8>(bits), all));
+    return __builtin_popcount(bits);
+  }
 
   BARCHAN_INLINE Real load_unaligned(const double* p) { return Real(_mm512_loadu_pd(p)); }
   BARCHAN_INLINE Real load(const double* p) { return Real(_mm512_load_pd(p)); }

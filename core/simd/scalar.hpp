@@ -21,6 +21,12 @@ struct Scalar {
   static Real select(Mask m, Real a, Real b) { return m ? a : b; }
   static bool any(Mask m) { return m; }
   static unsigned bits(Mask m) { return m ? 1U : 0U; }
+  /// Writes first + q for every bit q that is set, and returns how many; up to kWidth are written
+  /// over.
+  static int write_set(unsigned bits, int first, int* to) {
+    *to = first;
+    return static_cast<int>(bits);
+  }
 };
 
 }  // namespace barchan::simd

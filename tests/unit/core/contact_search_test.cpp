@@ -127,7 +127,7 @@ void expect_found_across_cuts(bool is_periodic) {
 
     IdPairs found;
     for (std::size_t l = 0; l < lanes.size(); ++l) {
-      for (const auto name : {Lane<Dim>::HeldLow, Lane<Dim>::Owned, Lane<Dim>::HeldHigh}) {
+      for (const auto name : Lane<Dim>::kLists) {
         append(lanes[l], lanes[l].list(name), found, nullptr);
       }
       IdPairs once_more;  // the other side of a cut finds the same pairs again

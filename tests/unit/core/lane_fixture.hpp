@@ -160,8 +160,7 @@ class Lanes {
           if (!is_new && it->second != s) sides_agree = false;
         }
       };
-      for (const auto name : {Lane<Dim>::HeldLow, Lane<Dim>::Owned, Lane<Dim>::HeldHigh})
-        take(lane->list(name));
+      for (const auto name : Lane<Dim>::kLists) take(lane->list(name));
       for (const auto side : {Lane<Dim>::Left, Lane<Dim>::Right}) {
         if (lane->band(side).exists) take(lane->band(side).across);
       }

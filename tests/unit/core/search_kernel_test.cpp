@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
+#include <span>
+#include <vector>
 
 #include <barchan/core/contact_search.hpp>
 #include <barchan/core/kernels/kernel_set.hpp>
@@ -36,18 +39,20 @@ double distance2(const SearchJob& job, int dim, std::size_t q) {
   return sum;
 }
 
-std::vector<std::int32_t> by_definition(const SearchJob& job, int dim, std::int32_t begin,
-                                        std::int32_t end) {
+std::vector<std::int32_t> by_definition(const SearchJob& job, int dim,
+                                        std::span<const Rows> ranges) {
   std::vector<std::int32_t> found;
-  for (std::int32_t j = begin; j < end; ++j) {
-    const auto q = static_cast<std::size_t>(j - job.first);
-    const double reach = job.radius[q] + job.reach;
-    if (distance2(job, dim, q) < reach * reach) found.push_back(j);
+  for (const Rows rows : ranges) {
+    for (std::int32_t j = rows.begin; j < rows.end; ++j) {
+      const auto q = static_cast<std::size_t>(j - job.first);
+      const double reach = job.radius[q] + job.reach;
+      if (distance2(job, dim, q) < reach * reach) found.push_back(j);
+    }
   }
   return found;
 }
 
-TEST(SearchKernel, FindsWhatIsWithinReachAtEveryWidthAndForEveryRange) {
+TEST(SearchKernel, FindsWhatIsWithinReachAtEveryWidthAndForAllRanges) {
   const Planes planes = random_planes(5);
   for (const int dim : {2, 3}) {
     for (const bool periodic : {false, true}) {
@@ -56,16 +61,17 @@ TEST(SearchKernel, FindsWhatIsWithinReachAtEveryWidthAndForEveryRange) {
       job.radius = planes.radius.data();
       job.first = planes.first;
       job.reach = 0.6;
-      if (periodic) job.box.length[0] = 4.0, job.box.inverse[0] = 0.25;
+      if (periodic) job.wraps = true, job.box.length[0] = 4.0, job.box.inverse[0] = 0.25;
       job.at[0] = 0.2, job.at[1] = 2.0, job.at[2] = 1.5;
       LawTable laws;
       for (const VectorWidth width : vector_widths()) {
         const SearchKernel search = make_kernels(dim, width, laws, false, job.box).search;
         for (std::int32_t begin = 5; begin < 5 + kRows; begin += 3) {
           for (std::int32_t end = begin; end <= 5 + kRows; ++end) {
-            std::vector<std::int32_t> found(kRows + kBatch);
-            found.resize(static_cast<std::size_t>(search(job, begin, end, found.data())));
-            ASSERT_EQ(found, by_definition(job, dim, begin, end))
+            const std::array ranges{Rows{5, 5 + begin / 4}, Rows{begin, begin}, Rows{begin, end}};
+            std::vector<std::int32_t> found(2 * kRows + kBatch);
+            found.resize(static_cast<std::size_t>(search(job, ranges.data(), 3, found.data())));
+            ASSERT_EQ(found, by_definition(job, dim, ranges))
                 << dim << "D, " << name_of(width) << ", rows " << begin << " to " << end;
           }
         }

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <cstdint>
+
+namespace barchan {
+
+/// Half-open range of particle indices.
+struct Rows {
+  std::int32_t begin = 0, end = 0;
+};
+
+}  // namespace barchan
