@@ -22,7 +22,7 @@ RecordedRun record_run(const Communicator& world, const LoadedDeck& loaded,
     try {
       simulation.run(loaded.deck.model.time.num_steps);
     } catch (const std::exception& e) {
-      end_run(world, e.what());
+      end_run(world, e, e.what());
     }
     (void)simulation.measure();  // takes in the last halo, as the end of the replay will
     const Timings timings = simulation.timings();
@@ -37,7 +37,7 @@ RecordedRun record_run(const Communicator& world, const LoadedDeck& loaded,
 void compare_replay(const Simulation& replay, const RecordedRun& recorded, std::uint64_t digest,
                     bool is_quiet) {
   if (digest != recorded.digest) {
-    throw RunError(
+    throw CommonError(
         fmt::format("the replay ended with digest {:016x}, the recorded run with {:016x}", digest,
                     recorded.digest));
   }

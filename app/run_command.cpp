@@ -83,29 +83,34 @@ void save_failed(Simulation& simulation, RunResults& results, const AgreedError&
   }
 }
 
+/// Steps, then what is due after them.
+void advance_once(Simulation& simulation, RunResults& results, Progress& progress) {
+  const std::int64_t end = simulation.model().time.num_steps;
+  const std::int64_t due = std::min(results.next_step(), end) - simulation.step();
+  simulation.run(std::min(due, progress.most_steps()));
+  progress.update();
+  print_warnings(simulation, results, progress);
+  results.write();
+}
+
 void advance(Simulation& simulation, RunResults& results, const RunFolder& folder,
              Progress& progress) {
   const std::int64_t end = simulation.model().time.num_steps;
-  while (simulation.step() < end && !simulation.stopped()) {
-    const std::int64_t due = std::min(results.next_step(), end) - simulation.step();
-    try {
-      simulation.run(std::min(due, progress.most_steps()));
-    } catch (const AgreedError& e) {
-      progress.clear();
-      save_failed(simulation, results, e);
-      end_run(simulation.communicator(), with_last_checkpoint(folder, e.what()));
-    } catch (const WaitError& e) {
-      progress.clear();
-      results.log().add(std::string("error: ") + e.what());
-      end_waiting(simulation.communicator(), with_last_checkpoint(folder, e.what()));
-    } catch (const std::exception& e) {
-      progress.clear();
-      results.log().add(std::string("error: ") + e.what());
-      end_run(simulation.communicator(), with_last_checkpoint(folder, e.what()));
-    }
-    progress.update();
-    print_warnings(simulation, results, progress);
-    results.write();
+  try {
+    while (simulation.step() < end && !simulation.stopped())
+      advance_once(simulation, results, progress);
+  } catch (const AgreedError& e) {
+    progress.clear();
+    save_failed(simulation, results, e);
+    end_run(simulation.communicator(), e, with_last_checkpoint(folder, e.what()));
+  } catch (const WaitError& e) {
+    progress.clear();
+    results.log().add(std::string("error: ") + e.what());
+    end_waiting(simulation.communicator(), with_last_checkpoint(folder, e.what()));
+  } catch (const std::exception& e) {
+    progress.clear();
+    results.log().add(std::string("error: ") + e.what());
+    end_run(simulation.communicator(), e, with_last_checkpoint(folder, e.what()));
   }
   progress.clear();
 }
@@ -127,7 +132,7 @@ void save_last(Simulation& simulation, RunResults& results, Progress& progress, 
   const bool is_saved = simulation.finish_checkpoints();
   print_warnings(simulation, results, progress);
   if (!is_saved && interrupted)
-    throw RunError("the run was interrupted and its last state could not be saved");
+    throw CommonError("the run was interrupted and its last state could not be saved");
 }
 
 Simulation begin(const Communicator& world, const RunOptions& options, const LoadedDeck& loaded,

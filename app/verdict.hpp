@@ -1,5 +1,6 @@
 #pragma once
 
+#include <exception>
 #include <functional>
 #include <string>
 
@@ -10,15 +11,18 @@ namespace barchan::app {
 /// Does the work of a command and turns what it throws into one message on stderr and an exit
 /// status.
 ///
-/// An InputError is the same on every rank: rank 0 prints it, all return 2. Any other error may be
-/// known to one rank only, while the others wait for it: it is printed once and all ranks are ended
-/// with status 1.
+/// An InputError is the same on every rank: rank 0 prints it, all return 2. So is a CommonError,
+/// and ends all ranks with status 1. Any other error may be known to one rank only, while the
+/// others wait for it: it is printed once and all ranks are ended with status 1.
 /// @param world  null without MPI
 int with_verdict(const Communicator* world, const std::function<void()>& work);
 
 /// Ends all ranks with status 1 after one message, before anything unwinds that might wait for the
 /// others; alone it throws RunError. For errors inside the time loop.
-[[noreturn]] void end_run(const Communicator& world, const std::string& what);
+/// @param error  tells whether every rank knows
+/// @param what   the message
+[[noreturn]] void end_run(const Communicator& world, const std::exception& error,
+                          const std::string& what);
 
 /// The same after a WaitError: every rank that waits says what it waits for, so that the one that
 /// hangs can be told from those that wait for it in turn.

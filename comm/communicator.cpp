@@ -7,6 +7,7 @@
 
 #include <barchan/comm/mpi_error.hpp>
 #include <barchan/comm/mpi_session.hpp>
+#include <barchan/comm/watchdog.hpp>
 
 namespace barchan {
 namespace {
@@ -22,15 +23,31 @@ void for_pieces(std::size_t bytes, Move move) {
   }
 }
 
-template <class T>
-void allreduce(MPI_Comm comm, std::span<T> values, MPI_Datatype type, MPI_Op op) {
-  check(MPI_Allreduce(MPI_IN_PLACE, values.data(), mpi_count(values.size()), type, op, comm),
-        "MPI_Allreduce");
+// MPI's own waits never end when another rank hangs; these do.
+void await(const Communicator& communicator, MPI_Request request, const std::string& what,
+           double limit = wait_limit()) {
+  const auto has_come = [&] {
+    int is_done = 0;
+    check(MPI_Test(&request, &is_done, MPI_STATUS_IGNORE), "MPI_Test");
+    return is_done != 0;
+  };
+  wait_until(
+      has_come, [&] { return "rank " + std::to_string(communicator.rank()) + ": " + what; }, limit);
 }
 
-int allreduce_flag(MPI_Comm comm, bool mine, MPI_Op op) {
+template <class T>
+void allreduce(const Communicator& communicator, std::span<T> values, MPI_Datatype type, MPI_Op op,
+               double limit = wait_limit()) {
+  MPI_Request request = MPI_REQUEST_NULL;
+  check(MPI_Iallreduce(MPI_IN_PLACE, values.data(), mpi_count(values.size()), type, op,
+                       communicator.handle(), &request),
+        "MPI_Iallreduce");
+  await(communicator, request, "what all ranks say between steps", limit);
+}
+
+int allreduce_flag(const Communicator& communicator, bool mine, MPI_Op op) {
   int flag = mine ? 1 : 0;
-  check(MPI_Allreduce(MPI_IN_PLACE, &flag, 1, MPI_INT, op, comm), "MPI_Allreduce");
+  allreduce(communicator, std::span(&flag, 1), MPI_INT, op);
   return flag;
 }
 
@@ -101,12 +118,16 @@ Communicator Communicator::split(int group) const {
 }
 
 void Communicator::barrier() const {
-  check(MPI_Barrier(comm_), "MPI_Barrier");
+  MPI_Request request = MPI_REQUEST_NULL;
+  check(MPI_Ibarrier(comm_, &request), "MPI_Ibarrier");
+  await(*this, request, "all ranks to come to the same place");
 }
 
 void Communicator::bcast(std::span<std::byte> bytes, int root) const {
   for_pieces(bytes.size(), [&](std::size_t offset, int count) {
-    check(MPI_Bcast(bytes.data() + offset, count, MPI_BYTE, root, comm_), "MPI_Bcast");
+    MPI_Request request = MPI_REQUEST_NULL;
+    check(MPI_Ibcast(bytes.data() + offset, count, MPI_BYTE, root, comm_, &request), "MPI_Ibcast");
+    await(*this, request, "what rank " + std::to_string(root) + " tells all");
   });
 }
 
@@ -119,36 +140,40 @@ std::string Communicator::bcast(std::string text, int root) const {
 }
 
 void Communicator::allreduce_sum(std::span<std::int64_t> values) const {
-  allreduce(comm_, values, MPI_INT64_T, MPI_SUM);
+  allreduce(*this, values, MPI_INT64_T, MPI_SUM);
 }
 void Communicator::allreduce_sum(std::span<std::uint64_t> values) const {
-  allreduce(comm_, values, MPI_UINT64_T, MPI_SUM);
+  allreduce(*this, values, MPI_UINT64_T, MPI_SUM);
 }
 void Communicator::allreduce_max(std::span<std::int64_t> values) const {
-  allreduce(comm_, values, MPI_INT64_T, MPI_MAX);
+  allreduce(*this, values, MPI_INT64_T, MPI_MAX);
 }
 void Communicator::allreduce_max(std::span<double> values) const {
-  allreduce(comm_, values, MPI_DOUBLE, MPI_MAX);
+  allreduce(*this, values, MPI_DOUBLE, MPI_MAX);
 }
 void Communicator::allreduce_min(std::span<double> values) const {
-  allreduce(comm_, values, MPI_DOUBLE, MPI_MIN);
+  allreduce(*this, values, MPI_DOUBLE, MPI_MIN);
 }
 
 bool Communicator::all_of(bool mine) const {
-  return allreduce_flag(comm_, mine, MPI_LAND) != 0;
+  return allreduce_flag(*this, mine, MPI_LAND) != 0;
 }
 bool Communicator::any_of(bool mine) const {
-  return allreduce_flag(comm_, mine, MPI_LOR) != 0;
+  return allreduce_flag(*this, mine, MPI_LOR) != 0;
 }
 
 std::vector<std::vector<std::byte>> Communicator::gather(std::span<const std::byte> mine) const {
   const std::uint64_t length = mine.size();
   std::vector<std::uint64_t> lengths(is_root() ? static_cast<std::size_t>(size_) : 0);
-  check(MPI_Gather(&length, 1, MPI_UINT64_T, lengths.data(), 1, MPI_UINT64_T, 0, comm_),
-        "MPI_Gather");
+  MPI_Request request = MPI_REQUEST_NULL;
+  check(MPI_Igather(&length, 1, MPI_UINT64_T, lengths.data(), 1, MPI_UINT64_T, 0, comm_, &request),
+        "MPI_Igather");
+  await(*this, request, "what all ranks hand to rank 0");
   if (!is_root()) {
     for_pieces(mine.size(), [&](std::size_t offset, int count) {
-      check(MPI_Send(mine.data() + offset, count, MPI_BYTE, 0, gather_tag, comm_), "MPI_Send");
+      check(MPI_Isend(mine.data() + offset, count, MPI_BYTE, 0, gather_tag, comm_, &request),
+            "MPI_Isend");
+      await(*this, request, "rank 0 to take its part");
     });
     return {};
   }
@@ -158,9 +183,9 @@ std::vector<std::vector<std::byte>> Communicator::gather(std::span<const std::by
     auto& theirs = all[static_cast<std::size_t>(source)];
     theirs.resize(lengths[static_cast<std::size_t>(source)]);
     for_pieces(theirs.size(), [&](std::size_t offset, int count) {
-      check(MPI_Recv(theirs.data() + offset, count, MPI_BYTE, source, gather_tag, comm_,
-                     MPI_STATUS_IGNORE),
-            "MPI_Recv");
+      check(MPI_Irecv(theirs.data() + offset, count, MPI_BYTE, source, gather_tag, comm_, &request),
+            "MPI_Irecv");
+      await(*this, request, "the part of rank " + std::to_string(source));
     });
   }
   return all;
@@ -179,7 +204,7 @@ std::vector<std::string> Communicator::gather(const std::string& mine) const {
 
 std::string Communicator::first_error(const std::string& error) const {
   int lowest = error.empty() ? std::numeric_limits<int>::max() : rank_;
-  check(MPI_Allreduce(MPI_IN_PLACE, &lowest, 1, MPI_INT, MPI_MIN, comm_), "MPI_Allreduce");
+  allreduce(*this, std::span(&lowest, 1), MPI_INT, MPI_MIN, file_wait_limit());
   if (lowest == std::numeric_limits<int>::max()) return {};
   return bcast(error, lowest);
 }

@@ -16,7 +16,8 @@ class Tape;
 
 /// A private duplicate of the caller's communicator: our messages never meet the caller's, and
 /// errors come back as codes (MPI_ERRORS_RETURN), which are thrown as MpiError. Every member below
-/// "collective" is collective over all ranks. One thread at a time.
+/// "collective" is collective over all ranks, and throws WaitError (watchdog.hpp) when another rank
+/// never comes. One thread at a time.
 class Communicator {
  public:
   /// Duplicates `caller`. Collective. Errors: MpiError; RunError when MPI is not running.
@@ -68,7 +69,7 @@ class Communicator {
   [[nodiscard]] std::vector<std::string> gather(const std::string& mine) const;
 
   /// One verdict for all: when `error` is not empty on some rank, every rank gets the text of the
-  /// lowest such rank; else empty.
+  /// lowest such rank; else empty. For work with files: waits for file_wait_limit().
   [[nodiscard]] std::string first_error(const std::string& error) const;
 
  private:

@@ -222,12 +222,13 @@ bool Reduction::test() {
   return true;
 }
 
-void Reduction::wait() {
+void Reduction::wait(double limit_seconds) {
   wait_until([this] { return test(); },
              [this] {
                return "rank " + std::to_string(state_->communicator.rank()) + ": reduction " +
                       std::to_string(state_->number) + " of all ranks";
-             });
+             },
+             limit_seconds);
 }
 
 std::span<const double> Reduction::maxima() const {

@@ -6,6 +6,7 @@
 #include <span>
 
 #include <barchan/comm/communicator.hpp>
+#include <barchan/comm/watchdog.hpp>
 
 namespace barchan {
 
@@ -36,8 +37,8 @@ class Reduction {
   /// True once the result is there, and until the next begin. Never blocks; lets the library make
   /// progress.
   [[nodiscard]] bool test();
-  /// Errors: RunError after wait_limit().
-  void wait();
+  /// Errors: WaitError.
+  void wait(double limit_seconds = wait_limit());
 
   [[nodiscard]] std::span<const double> maxima() const;      ///< @pre test()
   [[nodiscard]] std::span<const std::int64_t> sums() const;  ///< @pre test()

@@ -14,6 +14,11 @@ namespace barchan {
 double wait_limit();
 void set_wait_limit(double seconds);
 
+/// The same where others read or write files meanwhile: ten times as long.
+inline double file_wait_limit() {
+  return 10.0 * wait_limit();
+}
+
 /// A message that never came. Other ranks may wait as well, each for something else.
 class WaitError : public RunError {
  public:

@@ -34,13 +34,19 @@ class RunError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A RunError that every rank throws between the same two steps, so that what there is can still be
-/// written together.
-class AgreedError : public RunError {
+/// A RunError that every rank throws with the same words, so that one says it for all.
+class CommonError : public RunError {
+ public:
+  using RunError::RunError;
+};
+
+/// A CommonError that every rank throws between the same two steps, so that what there is can still
+/// be written together.
+class AgreedError : public CommonError {
  public:
   /// @param can_go_on  whether the state is sound: a run from here, under another rule, makes sense
   explicit AgreedError(const std::string& what, bool can_go_on = false)
-      : RunError(what), can_go_on_(can_go_on) {}
+      : CommonError(what), can_go_on_(can_go_on) {}
   [[nodiscard]] bool can_go_on() const { return can_go_on_; }
 
  private:

@@ -150,7 +150,7 @@ void CheckpointKeeper::wait_idle() {
     begin_agreement();
   }
   if (phase_ == Phase::Agreeing) {
-    agreement_.wait();
+    agreement_.wait(file_wait_limit());
     take_agreement();
   }
   if (phase_ == Phase::Committing) {

@@ -145,7 +145,7 @@ void Simulation::EngineOf<Dim>::check_restored(const OpenCheckpoint& checkpoint)
   if (found[0] == saved.particles && found[1] == saved.contacts &&
       found[2] == saved.wall_contacts && found[3] == saved.bonds)
     return;
-  throw RunError(
+  throw CommonError(
       fmt::format("{}: of {} particles, {} contacts, {} wall contacts and {} bonds only {}, {}, {} "
                   "and {} could be restored: "
                   "take another checkpoint",

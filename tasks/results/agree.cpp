@@ -22,7 +22,7 @@ void agree(const Communicator& communicator, const std::function<void()>& work) 
   error = communicator.first_error(error);
   if (error.empty()) return;
   if (error.front() == 'I') throw InputError(error.substr(1), "");
-  throw RunError(error.substr(1));
+  throw CommonError(error.substr(1));
 }
 
 }  // namespace barchan

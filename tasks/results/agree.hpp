@@ -10,8 +10,8 @@ namespace barchan {
 /// failed.
 ///
 /// For work that is local but may go well on one rank and not on another: reading, writing. So
-/// nobody waits for a rank that threw. @pre `work` calls nothing that is collective Collective.
-/// Errors: InputError as thrown; all else as RunError.
+/// nobody waits for a rank that threw. @pre `work` calls nothing that is collective. Collective.
+/// Errors: InputError as thrown; all else as CommonError.
 void agree(const Communicator& communicator, const std::function<void()>& work);
 
 }  // namespace barchan

@@ -3,9 +3,12 @@ import os
 import shutil
 import subprocess
 import sys
+import time
+
+sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
 
 COMMAND = sys.argv[1] if len(sys.argv) > 1 else os.environ["BARCHAN_COMMAND"]
-SECONDS = 240
+SECONDS = 240  # for anything to end, however slow the machine
 
 DECK = """
 dimension = 2
@@ -90,6 +93,17 @@ def fresh(*paths):
             shutil.rmtree(path)
         elif os.path.exists(path):
             os.remove(path)
+
+
+def shell(*words):
+    """Whether a command of the system ended well."""
+    return subprocess.run(words, capture_output=True, text=True).returncode == 0
+
+
+def timed(check, *arguments):
+    begin = time.time()
+    check(*arguments)
+    print(f"{check.__name__}{arguments}: {time.time() - begin:.1f} s", flush=True)
 
 
 def finish():

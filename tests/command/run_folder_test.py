@@ -5,7 +5,8 @@ import os
 import signal
 import time
 
-from _helper import DECK, edited, expect, finish, fresh, run, start, write
+from _helper import DECK, SECONDS, edited, expect, finish, fresh, run, start, write
+from processes import children_of, rank_of
 
 FIELDS = ["version", "deck", "ranks", "threads", "exchange", "schedule", "contact_search", "transport", "particles",
           "steps", "dt", "time", "loop_seconds", "particle_steps_per_second", "contacts", "rebuilds", "migrations",
@@ -91,29 +92,17 @@ def check_ring():
     expect(first["bonds"] == "12", f"ring: {first['bonds']} bonds")
 
 
-def children_of(pid):
-    found = []
-    for name in filter(str.isdigit, os.listdir("/proc")):
-        try:
-            with open(f"/proc/{name}/stat", encoding="utf-8") as file:
-                if int(file.read().rsplit(")", 1)[1].split()[1]) == pid:
-                    found.append(int(name))
-        except OSError:
-            pass
-    return found
-
-
 def check_signal(number, ranks):
     out = f"signal{number}_{ranks}.out"
     fresh(out)
     process = start("run", "case.toml", "--steps", "100000000", "--set", "output.series_every=50", "--out", out, ranks=ranks)
-    deadline = time.time() + 60
+    deadline = time.time() + SECONDS
     while time.time() < deadline and not (os.path.exists(out + "/series.csv") and len(rows_of(out)) > 2):
         time.sleep(0.1)
     time.sleep(0.3)
-    target = process.pid if ranks == 1 else children_of(process.pid)[0]
+    target = process.pid if ranks == 1 else next(pid for pid in children_of(process.pid) if rank_of(pid) == 0)
     os.kill(target, number)
-    stdout, stderr = process.communicate(timeout=60)
+    stdout, stderr = process.communicate(timeout=SECONDS)
     expect(process.returncode == 0, f"signal {number}, {ranks} ranks: status {process.returncode}, {stderr}")
     expect("Interrupted at step" in stdout, f"signal {number}, {ranks} ranks: {stdout}")
     check_whole(out, ranks, None)

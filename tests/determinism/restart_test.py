@@ -19,6 +19,9 @@ import subprocess
 import sys
 import time
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from processes import children_of  # noqa: E402
+
 SOURCE = pathlib.Path(os.environ.get("BARCHAN_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
 STEPS, EVERY = 3000, 200
 # The plate comes down early, so that all that a checkpoint holds is there when ranks are killed.
@@ -60,15 +63,6 @@ def compare(folder, expected, what):
         expect(a == b, f"{what}: {name} differs from the undisturbed run")
 
 
-def children_of(parent):
-    """Process ids of the command's ranks below mpirun."""
-    try:
-        children = pathlib.Path(f"/proc/{parent}/task/{parent}/children").read_text()
-    except OSError:
-        return []
-    return [int(word) for word in children.split()]
-
-
 def stop_and_go_on(command, expected):
     shutil.rmtree("stopped", ignore_errors=True)
     first = run(command, "stopped", 1, 2, steps=1234)
@@ -96,23 +90,35 @@ def skip_damaged(command, expected):
     compare("stopped", expected, "went on from the checkpoint before a damaged one")
 
 
-def save_on_signals(command, expected):
+def wait_until(process, is_so):
+    while process.poll() is None and not is_so():
+        time.sleep(0.005)
+
+
+def saved_in(folder):
+    names = os.listdir(f"{folder}/checkpoints") if os.path.isdir(f"{folder}/checkpoints") else []
+    return sorted(int(name[5:]) for name in names if name[5:].isdigit())
+
+
+def save_on_signals(command):
+    """A run without end, saved by one signal and ended by another, then continued to a step that is known by then."""
+    without = ("--set", "checkpoint.every_steps=0")
     shutil.rmtree("signalled", ignore_errors=True)
-    process = subprocess.Popen(line_of(command, "signalled", 1, 1, "--set", "checkpoint.every_steps=0"),
+    process = subprocess.Popen(line_of(command, "signalled", 1, 1, *without, steps=10**8),
                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    while process.poll() is None and not os.path.exists("signalled/series.csv"):
-        time.sleep(0.01)
-    time.sleep(0.2)
+    wait_until(process, lambda: rows_of("signalled") > 1)
     process.send_signal(signal.SIGUSR1)
-    time.sleep(0.3)
+    wait_until(process, lambda: saved_in("signalled"))
     process.send_signal(signal.SIGTERM)
-    out, err = process.communicate(timeout=100)
+    _, err = process.communicate(timeout=500)
     expect(process.returncode == 0, "ends well on SIGTERM: " + err)
-    saved = sorted(os.listdir("signalled/checkpoints")) if os.path.isdir("signalled/checkpoints") else []
-    expect(len(saved) in (1, 2), f"saves on signals: {saved}")  # one when the run was over before the second
-    done = run(command, "signalled", 2, 1, "--restart", "auto", "--set", "checkpoint.every_steps=0")
-    expect(done.returncode == 0, "goes on after signals: " + done.stderr)
-    compare("signalled", expected, "signalled")
+    saved = saved_in("signalled")
+    expect(len(saved) == 2, f"saves on signals: {saved}")
+    steps = saved[-1] + 300
+    for folder, ranks, more in (("signalled", 2, ["--restart", "auto"]), ("unsignalled", 1, ["--force"])):
+        done = run(command, folder, ranks, 1, *without, *more, steps=steps)
+        expect(done.returncode == 0, f"{folder}, {steps} steps: {done.stderr}")
+    compare("signalled", finished("unsignalled"), f"saved on signals at {saved}")
 
 
 def rows_of(folder):
@@ -145,6 +151,14 @@ def random_moment(folder, rng, last_row):
     return is_time
 
 
+def was_killed(pid):
+    try:
+        os.kill(pid, signal.SIGKILL)
+    except ProcessLookupError:  # was faster
+        return False
+    return True
+
+
 def kill_and_go_on(command, expected, rng, number, steps):
     """Up to three kills in one run. @return how many struck a run under way"""
     folder, kills, last_row = "killed", [], steps // 100
@@ -156,8 +170,7 @@ def kill_and_go_on(command, expected, rng, number, steps):
         moment = random_moment(folder, rng, last_row)
         if len(kills) < 3 and not has_ended_before(process, moment):
             victims = children_of(process.pid)
-            if victims:
-                os.kill(rng.choice(victims), signal.SIGKILL)
+            if victims and was_killed(rng.choice(victims)):
                 kills.append(100 * max(rows_of(folder) - 1, 0))
         _, err = process.communicate(timeout=500)
         if process.returncode == 0:
@@ -185,7 +198,7 @@ def main():
     expected = finished("whole")
     stop_and_go_on(arguments.command, expected)
     skip_damaged(arguments.command, expected)
-    save_on_signals(arguments.command, expected)
+    save_on_signals(arguments.command)
     if arguments.steps != STEPS:
         whole = run(arguments.command, "whole", 1, 1, "--force", steps=arguments.steps)
         expect(whole.returncode == 0, whole.stderr)

@@ -1,12 +1,14 @@
 #include <barchan/comm/communicator.hpp>
 
 #include <array>
+#include <memory>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include <barchan/comm/mpi_error.hpp>
 #include <barchan/comm/mpi_session.hpp>
+#include <barchan/comm/watchdog.hpp>
 
 namespace barchan {
 namespace {
@@ -114,6 +116,26 @@ TEST(MpiSession, TellsTheLibraryAndItsThreadLevel) {
   EXPECT_FALSE(mpi_library_version().empty());
   EXPECT_TRUE(mpi_thread_level() == "serialized" || mpi_thread_level() == "multiple");
   EXPECT_TRUE(is_mpi_initialized());
+}
+
+TEST(Communicator, DoesNotWaitForEverForARankThatNeverComes) {
+  const auto comm = std::make_unique<Communicator>(Communicator::world());
+  const double before = wait_limit();
+  set_wait_limit(0.2);
+  const bool is_late = comm->rank() == comm->size() - 1;
+
+  std::string said;
+  try {
+    if (!is_late) comm->barrier();
+  } catch (const WaitError& error) {
+    said = error.what();
+  }
+  set_wait_limit(before);
+  MPI_Barrier(MPI_COMM_WORLD);
+  if (is_late) comm->barrier();  // so that no message is left over
+
+  const std::string mine = "rank " + std::to_string(comm->rank()) + ": all ranks";
+  EXPECT_EQ(said.find(mine) != std::string::npos, !is_late) << said;
 }
 
 }  // namespace

@@ -45,7 +45,8 @@ class RandomDeck:
         if rng.random() < 0.2:
             axes[0], axes[1] = axes[1], axes[0]
         self.size = [n * self.cell for n in axes]
-        self.is_closed = rng.random() < 0.95
+        self.outside = rng.choice(("error", "error", "delete"))
+        self.is_closed = rng.random() < (0.3 if self.outside == "delete" else 0.95)
         self.plate = rng.random() < 0.4  # across the middle of the longest axis
         self.periodic = [rng.random() < 0.3 for _ in range(self.dimension)]
         names = [f'"{"xyz"[a]}"' for a in range(self.dimension) if self.periodic[a]]
@@ -53,7 +54,7 @@ class RandomDeck:
         self.lines.append(f"dimension = {self.dimension}")
         self.lines.append("gravity = " + self.vector(pull * c for c in self.direction()))
         self.table("[domain]", lo=self.vector([0.0] * 3), hi=self.vector(self.size),
-                   periodic="[" + ", ".join(names) + "]",
+                   periodic="[" + ", ".join(names) + "]", outside=f'"{self.outside}"',
                    strip_axis='"' + rng.choice(("longest", "longest", "x", "y")) + '"')
 
     def draw_materials(self):
@@ -130,8 +131,8 @@ class RandomDeck:
         return max(range(self.dimension), key=lambda a: self.size[a])
 
     def inner(self, axis):
-        """Where particles may be: walls stand a cell within the domain."""
-        margin = 0.0 if self.periodic[axis] else self.cell
+        """Where particles may be: where there are walls, they stand a cell within the domain."""
+        margin = 0.0 if self.periodic[axis] or not self.is_closed else self.cell
         return margin, self.size[axis] - margin
 
     def draw_particles(self):
@@ -179,6 +180,9 @@ class RandomDeck:
         self.table("[time]", step=self.step, steps=self.steps, allow_unstable=True)
         if rng.random() < 0.5:
             self.table("[search]", skin=rng.uniform(0.05, 0.8) * RADIUS)
+        if rng.random() < 0.5:
+            self.table("[limits]", overlap_warning=rng.choice((0.0, 0.02, 0.1)),
+                       overlap_error=rng.choice((0.0, 0.15, 0.5)))
         self.table("[output]", series_every=rng.randint(10, 60), snapshots_every=rng.choice((0, 100)),
                    picture="false")
 

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 
 #include <barchan/core/error.hpp>
 
@@ -15,11 +17,8 @@ namespace {
 class RunFolderTest : public testing::Test {
  protected:
   RunFolderTest() {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    root_ =
-        (fs::temp_directory_path() / (std::string("barchan_run_folder_") + test->name())).string();
-    fs::remove_all(root_);
-    fs::create_directories(root_);
+    root_ = (fs::temp_directory_path() / "barchan_run_folder_XXXXXX").string();
+    if (mkdtemp(root_.data()) == nullptr) throw std::runtime_error("no temporary folder");
   }
   ~RunFolderTest() override { fs::remove_all(root_); }
 
