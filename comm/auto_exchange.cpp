@@ -42,6 +42,10 @@ ExchangeCandidate measure(const std::string& name, const Communicator& communica
   return candidate;
 }
 
+bool is_mix(const std::string& name) {
+  return name.find('+') != std::string::npos;
+}
+
 /// Between all ranks; a mix needs what its far part needs.
 bool needs_window(const std::string& name) {
   const std::string far = name.substr(name.find('+') + 1);
@@ -110,7 +114,8 @@ SelectedExchange select_exchange(const Communicator& communicator, Neighbours ne
       continue;
     }
     choice.candidates.push_back(measure(name, communicator, neighbours, sized, choice));
-    if (needs_window(name)) choice.hint = choice.candidates.back().obstacle;
+    // A mix may lack no more than the memory shared within a node.
+    if (needs_window(name) && !is_mix(name)) choice.hint = choice.candidates.back().obstacle;
   }
   const std::size_t best = best_of(choice.candidates);
   choice.name = choice.candidates[best].name;

@@ -38,7 +38,7 @@ std::unique_ptr<Exchange> made_on_all(const Communicator& communicator, MakeIt&&
     fault = e.what();
   }
   const std::string first = communicator.first_error(fault);
-  if (!first.empty()) throw InputError(first, "or choose another exchange within the nodes");
+  if (!first.empty()) throw InputError(first, "");  // it has its remedy
   return exchange;
 }
 

@@ -6,6 +6,7 @@ void OneSidedExchange::allocate(SlotCapacity capacity) {
   layout_ = SlotLayout{capacity};
   window_ = Window(communicator(), layout_.total());
   window_.lock_all();
+  is_unified_ = window_.is_unified();
   communicator().barrier();
   for (const Lane lane : {Lane::Halo, Lane::Bulk}) {
     for (const Side side : {Side::Left, Side::Right}) {
@@ -22,9 +23,10 @@ void OneSidedExchange::put_word(const MessageKey& key, std::uint64_t value) {
               layout_.word(SlotLayout::at_receiver(key)));
 }
 
+// A sync may be one more look at the network (osc/pt2pt), after every chunk.
 void OneSidedExchange::progress() {
   SlotExchange::progress();
-  window_.sync();
+  if (!is_unified_) window_.sync();
 }
 
 }  // namespace barchan

@@ -47,6 +47,7 @@ class OneSidedExchange : public SlotExchange {
  private:
   Window window_;
   SlotLayout layout_;
+  bool is_unified_ = false;
   std::array<std::vector<std::byte>, num_lane_sides> local_;
   std::array<std::uint64_t, num_lane_sides>
       word_values_{};  // a put's origin must live until it is flushed

@@ -130,6 +130,13 @@ void Window::sync() const {
   check(MPI_Win_sync(window_), "MPI_Win_sync");
 }
 
+bool Window::is_unified() const {
+  int* model = nullptr;
+  int is_set = 0;
+  check(MPI_Win_get_attr(window_, MPI_WIN_MODEL, &model, &is_set), "MPI_Win_get_attr");
+  return is_set != 0 && *model == MPI_WIN_UNIFIED;
+}
+
 std::string Window::component() const {
   char text[MPI_MAX_OBJECT_NAME] = {};
   int length = 0;

@@ -45,6 +45,8 @@ class Window {
   void flush(int target) const;
   void flush_local(int target) const;
   void sync() const;
+  /// Whether what lands is seen by loads without sync(), which then only costs (MPI_WIN_UNIFIED).
+  [[nodiscard]] bool is_unified() const;
 
   /// "osc/rdma", "osc/sm", …: the component behind the window, where the library tells.
   [[nodiscard]] std::string component() const;

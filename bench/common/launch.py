@@ -23,10 +23,13 @@ def environment(ranks):
     return mine
 
 
-def pinned(command, ranks):
-    """The command on one core a rank; without pinning where ranks are more than cores."""
+def pinned(command, ranks, threads=1):
+    """The command on one core a thread; without pinning where they are more than cores."""
     if ranks == 1:
-        return ["taskset", "-c", str(max(os.sched_getaffinity(0))), *command]
+        cores = sorted(os.sched_getaffinity(0))[-threads:]
+        return ["taskset", "-c", ",".join(map(str, cores)), *command]
+    if threads > 1:
+        return ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none", *command]
     if ranks > num_cores():
         return ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none", *command]
     return ["mpirun", "-n", str(ranks), "--bind-to", "core", "--map-by", "core", *command]
@@ -61,9 +64,9 @@ def peak_of_tree(root, peaks):
             peaks[pid] = max(peaks.get(pid, 0), peak)
 
 
-def run(command, ranks=1, cwd=None, limit=3600, watch_memory=False):
+def run(command, ranks=1, cwd=None, limit=3600, watch_memory=False, threads=1):
     """Runs a command on pinned cores. Returns (standard output, peak resident MiB of all its processes or None)."""
-    process = subprocess.Popen(pinned(command, ranks), cwd=cwd, env=environment(ranks), text=True,
+    process = subprocess.Popen(pinned(command, ranks, threads), cwd=cwd, env=environment(ranks), text=True,
                                stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
     peaks = {}
 
@@ -91,7 +94,7 @@ def run_barchan(barchan, deck, out, ranks=1, arguments=(), settings=None, watch_
     command = [barchan, "run", deck, "--out", out, "--force", "--quiet", "--threads", str(threads), *arguments]
     for key, value in (settings or {}).items():
         command += ["--set", f"{key}={value}"]
-    _, peak = run(command, ranks, watch_memory=watch_memory)
+    _, peak = run(command, ranks, watch_memory=watch_memory, threads=threads)
     with open(os.path.join(out, "run.json")) as file:
         result = json.load(file)
     result["peak_mib"] = peak

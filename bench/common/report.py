@@ -15,6 +15,10 @@ def median(values):
     return statistics.median(values)
 
 
+def mean(values):
+    return statistics.fmean(values)
+
+
 def spread(values):
     """Largest less smallest over the median."""
     return (max(values) - min(values)) / median(values) if len(values) > 1 else 0.0

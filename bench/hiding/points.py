@@ -57,8 +57,14 @@ def run(command, cwd=None):
     except subprocess.TimeoutExpired:
         raise launch.Failed(f"{shlex.join(command)}\nran into the limit of {SECONDS} s") from None
     if done.returncode != 0:
-        raise launch.Failed(f"{shlex.join(command)}\nended with status {done.returncode}: {done.stdout.strip()[-500:]}")
+        raise launch.Failed(f"{shlex.join(command)}\nended with status {done.returncode}: {last_words(done.stdout)}")
     return done.stdout
+
+
+def last_words(said):
+    """What barchan complained of, or else the end of all that was said."""
+    errors = [line for line in said.splitlines() if line.startswith("barchan: ")]
+    return " ".join(errors) or said.strip()[-500:]
 
 
 def run_barchan(start, path, case, steps, *arguments):

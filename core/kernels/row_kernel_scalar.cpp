@@ -1,54 +1,47 @@
-#include <cmath>
-
 #include <barchan/core/kernels/row_loop.hpp>
 
 namespace barchan::kernels {
 namespace {
 
+// Pairs of doubles, which every compiler has. Number by number compilers read back in pairs what
+// they have just written singly, and the core waits for it.
+using Pair = double __attribute__((vector_size(16)));
+using Bits = long long __attribute__((vector_size(16)));
+
+constexpr Bits kSign{static_cast<long long>(1ULL << 63), static_cast<long long>(1ULL << 63)};
+
 struct Quad {
   struct Real {
-    double a[4];
-    friend Real operator+(const Real& p, const Real& q) {
-      return {p.a[0] + q.a[0], p.a[1] + q.a[1], p.a[2] + q.a[2], p.a[3] + q.a[3]};
-    }
-    friend Real operator-(const Real& p, const Real& q) {
-      return {p.a[0] - q.a[0], p.a[1] - q.a[1], p.a[2] - q.a[2], p.a[3] - q.a[3]};
-    }
-    friend Real operator*(const Real& p, const Real& q) {
-      return {p.a[0] * q.a[0], p.a[1] * q.a[1], p.a[2] * q.a[2], p.a[3] * q.a[3]};
-    }
+    Pair lo, hi;
+    friend Real operator+(Real p, Real q) { return {p.lo + q.lo, p.hi + q.hi}; }
+    friend Real operator-(Real p, Real q) { return {p.lo - q.lo, p.hi - q.hi}; }
+    friend Real operator*(Real p, Real q) { return {p.lo * q.lo, p.hi * q.hi}; }
   };
-  static Real of(double a, double b, double c, double d) { return {a, b, c, d}; }
-  static Real set(double a) { return {a, a, a, a}; }
-  static Real load(const double* p) { return {p[0], p[1], p[2], p[3]}; }
-  static void store(double* p, const Real& r) {
-    for (int c = 0; c < 4; ++c) p[c] = r.a[c];
+  static Real of(double a, double b, double c, double d) { return {Pair{a, b}, Pair{c, d}}; }
+  static Real set(double a) { return of(a, a, a, a); }
+  static Real load(const double* p) { return of(p[0], p[1], p[2], p[3]); }
+  static void store(double* p, Real r) { __builtin_memcpy(p, &r, sizeof r); }
+  static Real last(Real v) { return set(v.hi[1]); }
+  static Real where_positive(Real m, Real r) {
+    return {Pair((m.lo > 0.0) & Bits(r.lo)), Pair((m.hi > 0.0) & Bits(r.hi))};
   }
-  static Real last(const Real& v) { return set(v.a[3]); }
-  static Real where_positive(const Real& m, const Real& r) {
-    return {m.a[0] > 0 ? r.a[0] : 0.0, m.a[1] > 0 ? r.a[1] : 0.0, m.a[2] > 0 ? r.a[2] : 0.0,
-            m.a[3] > 0 ? r.a[3] : 0.0};
+  static Pair max(Pair p, Pair q) { return p > q ? p : q; }
+  static Real max(Real p, Real q) { return {max(p.lo, q.lo), max(p.hi, q.hi)}; }
+  static Pair abs(Pair r) { return Pair(Bits(r) & ~kSign); }
+  static Real abs(Real r) { return {abs(r.lo), abs(r.hi)}; }
+  /// All bits where |r| is more than the limit or no number.
+  static Real beyond(Real r, Real limit) {
+    return {Pair(~(abs(r.lo) <= limit.lo)), Pair(~(abs(r.hi) <= limit.hi))};
   }
-  static Real max(const Real& p, const Real& q) {
-    Real top;
-    for (int c = 0; c < 4; ++c) top.a[c] = p.a[c] > q.a[c] ? p.a[c] : q.a[c];
-    return top;
+  static Real either(Real p, Real q) {
+    return {Pair(Bits(p.lo) | Bits(q.lo)), Pair(Bits(p.hi) | Bits(q.hi))};
   }
-  /// 1 where |r| is more than the limit or no number.
-  static Real beyond(const Real& r, const Real& limit) {
-    Real is{};
-    for (int c = 0; c < 4; ++c) is.a[c] = std::fabs(r.a[c]) <= limit.a[c] ? 0.0 : 1.0;
-    return is;
+  static bool has_any(Real r) {
+    const Bits any = Bits(r.lo) | Bits(r.hi);
+    return (any[0] | any[1]) != 0;
   }
-  static Real either(const Real& p, const Real& q) { return p + q; }
-  static bool has_any(const Real& r) { return r.a[0] + r.a[1] + r.a[2] + r.a[3] > 0.0; }
-  static Real abs(const Real& r) {
-    return {std::fabs(r.a[0]), std::fabs(r.a[1]), std::fabs(r.a[2]), std::fabs(r.a[3])};
-  }
-  static Real copysign(const Real& m, const Real& s) {
-    return {std::copysign(m.a[0], s.a[0]), std::copysign(m.a[1], s.a[1]),
-            std::copysign(m.a[2], s.a[2]), std::copysign(m.a[3], s.a[3])};
-  }
+  static Pair copysign(Pair m, Pair s) { return Pair((Bits(m) & ~kSign) | (Bits(s) & kSign)); }
+  static Real copysign(Real m, Real s) { return {copysign(m.lo, s.lo), copysign(m.hi, s.hi)}; }
 };
 
 }  // namespace
