@@ -23,18 +23,6 @@ void for_pieces(std::size_t bytes, Move move) {
   }
 }
 
-// MPI's own waits never end when another rank hangs; these do.
-void await(const Communicator& communicator, MPI_Request request, const std::string& what,
-           double limit = wait_limit()) {
-  const auto has_come = [&] {
-    int is_done = 0;
-    check(MPI_Test(&request, &is_done, MPI_STATUS_IGNORE), "MPI_Test");
-    return is_done != 0;
-  };
-  wait_until(
-      has_come, [&] { return "rank " + std::to_string(communicator.rank()) + ": " + what; }, limit);
-}
-
 template <class T>
 void allreduce(const Communicator& communicator, std::span<T> values, MPI_Datatype type, MPI_Op op,
                double limit = wait_limit()) {
@@ -42,7 +30,7 @@ void allreduce(const Communicator& communicator, std::span<T> values, MPI_Dataty
   check(MPI_Iallreduce(MPI_IN_PLACE, values.data(), mpi_count(values.size()), type, op,
                        communicator.handle(), &request),
         "MPI_Iallreduce");
-  await(communicator, request, "what all ranks say between steps", limit);
+  communicator.await(request, "what all ranks say between steps", limit);
 }
 
 int allreduce_flag(const Communicator& communicator, bool mine, MPI_Op op) {
@@ -76,6 +64,7 @@ Communicator::Communicator(Communicator&& other) noexcept
       size_(other.size_),
       node_rank_(other.node_rank_),
       node_size_(other.node_size_),
+      is_given_up_(other.is_given_up_),
       tape_(std::move(other.tape_)) {}
 
 Communicator& Communicator::operator=(Communicator&& other) noexcept {
@@ -86,12 +75,14 @@ Communicator& Communicator::operator=(Communicator&& other) noexcept {
   size_ = other.size_;
   node_rank_ = other.node_rank_;
   node_size_ = other.node_size_;
+  is_given_up_ = other.is_given_up_;
   tape_ = std::move(other.tape_);
   return *this;
 }
 
 void Communicator::free() noexcept {
-  if (comm_ != MPI_COMM_NULL && is_mpi_initialized()) MPI_Comm_free(&comm_);
+  const bool may_free = comm_ != MPI_COMM_NULL && is_mpi_initialized() && !is_given_up_;
+  if (may_free) MPI_Comm_free(&comm_);
   comm_ = MPI_COMM_NULL;
 }
 
@@ -109,6 +100,18 @@ void Communicator::abort(int status) const {
   std::abort();
 }
 
+void Communicator::await(MPI_Request request, const std::string& what, double limit_seconds) const {
+  const auto has_come = [&] {
+    int is_done = 0;
+    check(MPI_Test(&request, &is_done, MPI_STATUS_IGNORE), "MPI_Test");
+    return is_done != 0;
+  };
+  is_given_up_ = true;
+  wait_until(
+      has_come, [&] { return "rank " + std::to_string(rank_) + ": " + what; }, limit_seconds);
+  is_given_up_ = false;
+}
+
 Communicator Communicator::split(int group) const {
   MPI_Comm part = MPI_COMM_NULL;
   check(MPI_Comm_split(comm_, group, rank_, &part), "MPI_Comm_split");
@@ -120,14 +123,14 @@ Communicator Communicator::split(int group) const {
 void Communicator::barrier() const {
   MPI_Request request = MPI_REQUEST_NULL;
   check(MPI_Ibarrier(comm_, &request), "MPI_Ibarrier");
-  await(*this, request, "all ranks to come to the same place");
+  await(request, "all ranks to come to the same place");
 }
 
 void Communicator::bcast(std::span<std::byte> bytes, int root) const {
   for_pieces(bytes.size(), [&](std::size_t offset, int count) {
     MPI_Request request = MPI_REQUEST_NULL;
     check(MPI_Ibcast(bytes.data() + offset, count, MPI_BYTE, root, comm_, &request), "MPI_Ibcast");
-    await(*this, request, "what rank " + std::to_string(root) + " tells all");
+    await(request, "what rank " + std::to_string(root) + " tells all");
   });
 }
 
@@ -168,12 +171,12 @@ std::vector<std::vector<std::byte>> Communicator::gather(std::span<const std::by
   MPI_Request request = MPI_REQUEST_NULL;
   check(MPI_Igather(&length, 1, MPI_UINT64_T, lengths.data(), 1, MPI_UINT64_T, 0, comm_, &request),
         "MPI_Igather");
-  await(*this, request, "what all ranks hand to rank 0");
+  await(request, "what all ranks hand to rank 0");
   if (!is_root()) {
     for_pieces(mine.size(), [&](std::size_t offset, int count) {
       check(MPI_Isend(mine.data() + offset, count, MPI_BYTE, 0, gather_tag, comm_, &request),
             "MPI_Isend");
-      await(*this, request, "rank 0 to take its part");
+      await(request, "rank 0 to take its part");
     });
     return {};
   }
@@ -185,7 +188,7 @@ std::vector<std::vector<std::byte>> Communicator::gather(std::span<const std::by
     for_pieces(theirs.size(), [&](std::size_t offset, int count) {
       check(MPI_Irecv(theirs.data() + offset, count, MPI_BYTE, source, gather_tag, comm_, &request),
             "MPI_Irecv");
-      await(*this, request, "the part of rank " + std::to_string(source));
+      await(request, "the part of rank " + std::to_string(source));
     });
   }
   return all;

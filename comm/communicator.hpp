@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <barchan/comm/mpi_include.hpp>
+#include <barchan/comm/watchdog.hpp>
 
 namespace barchan {
 
@@ -48,6 +49,11 @@ class Communicator {
   /// Ends the program on every rank. For errors that only one rank knows of.
   [[noreturn]] void abort(int status) const;
 
+  /// Waits for a request on handle(); MPI's own waits never end when another rank hangs. Local.
+  /// Errors: WaitError; this communicator is then left to the program's end.
+  void await(MPI_Request request, const std::string& what,
+             double limit_seconds = wait_limit()) const;
+
   // Collective.
   [[nodiscard]] Communicator duplicate() const { return Communicator(comm_); }
   /// The ranks that gave the same `group`, in their order here.
@@ -81,6 +87,7 @@ class Communicator {
   int size_ = 1;
   int node_rank_ = 0;
   int node_size_ = 1;
+  mutable bool is_given_up_ = false;  ///< a call is under way that will never end
   std::shared_ptr<Tape> tape_;
 };
 

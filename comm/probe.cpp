@@ -32,6 +32,15 @@ void probe_plain_put(const Communicator& communicator, const ProbeOptions& optio
   }
 }
 
+void check_sizes(const std::vector<std::size_t>& sizes) {
+  constexpr std::size_t most = 2147483647 - 128;  // of one MPI call, with header and trailer
+  const std::size_t largest = *std::ranges::max_element(sizes);
+  if (largest <= most) return;
+  throw InputError(
+      "messages of " + std::to_string(largest) + " bytes are more than one MPI call moves",
+      "use a smaller --bytes, at most " + std::to_string(most));
+}
+
 std::string window_component(const Communicator& communicator) {
   try {
     return Window(communicator, 64).component();
@@ -47,6 +56,7 @@ ProbeReport probe_exchanges(const Communicator& communicator, const ProbeOptions
     throw InputError("a probe needs at least two ranks",
                      "mpirun -n 2 barchan probe, on the nodes that a run would use");
   }
+  check_sizes(options.sizes);
   const Neighbours neighbours = strip_neighbours(communicator.rank(), communicator.size(), false);
   ProbeReport report;
   report.mpi_library = mpi_library_version();

@@ -1,6 +1,7 @@
 #include <filesystem>
 
 #include <barchan/core/checkpoint/checkpoint_folder.hpp>
+#include <barchan/core/checkpoint/durable.hpp>
 #include <barchan/core/error.hpp>
 #include <barchan/tasks/checkpoint_load.hpp>
 #include <barchan/tasks/checkpoint_read.hpp>
@@ -32,6 +33,10 @@ std::vector<std::string> candidates(const std::string& path, bool& is_named) {
   if (is_named) return {given.string()};
   const fs::path inner = given / "checkpoints";
   const CheckpointFolder folder(fs::is_directory(inner, ignored) ? inner.string() : given.string());
+  try {
+    folder.recover();
+  } catch (const FileError&) {  // in a folder that only can be read the others have to do
+  }
   std::vector<std::string> found;
   for (const std::int64_t step : folder.steps()) found.push_back(folder.complete(step));
   return found;

@@ -22,6 +22,28 @@ bool is_unfinished(const fs::path& path) {
   return name.starts_with(kPrefix) && (name.ends_with(kPart) || name.ends_with(kOld));
 }
 
+std::vector<fs::path> unfinished_in(const std::string& folder) {
+  std::vector<fs::path> found;
+  if (!fs::is_directory(folder)) return found;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (is_unfinished(entry.path())) found.push_back(entry.path());
+  }
+  return found;
+}
+
+/// The folder of checkpoints may be as new as what lies in it, and so may the run's folder. Where
+/// those above cannot be read there is no more to be done.
+void sync_names_of(const std::string& folder) {
+  fs::path above = fs::absolute(folder).lexically_normal();
+  for (int level = 0; level < 2; ++level) {
+    above = above.parent_path();
+    try {
+      sync_folder(above.string());
+    } catch (const FileError&) {
+    }
+  }
+}
+
 /// The step in the name of a complete checkpoint; -1 for all other names.
 std::int64_t step_of(const fs::path& path) {
   const std::string name = path.filename().string();
@@ -68,6 +90,7 @@ void CheckpointFolder::commit(const Manifest& manifest) const {
     fs::rename(to, old);
   });
   rename_durably(from, to);
+  sync_names_of(path_);
   std::error_code ignored;
   fs::remove_all(old, ignored);
 }
@@ -77,21 +100,19 @@ void CheckpointFolder::discard(std::int64_t step) const noexcept {
   fs::remove_all(unfinished(step), ignored);
 }
 
-void CheckpointFolder::clean() const {
-  or_file_error("clean", path_, [&] {
-    if (!fs::is_directory(path_)) return;
-    std::vector<fs::path> leftovers;
-    for (const auto& entry : fs::directory_iterator(path_)) {
-      if (is_unfinished(entry.path())) leftovers.push_back(entry.path());
-    }
-    for (const fs::path& path : leftovers) {
-      // A run that ended while it replaced a checkpoint of the same step.
+void CheckpointFolder::recover() const {
+  or_file_error("recover", path_, [&] {
+    for (const fs::path& path : unfinished_in(path_)) {
       const fs::path whole = fs::path(path).replace_extension();
-      if (path.extension() == kOld && !fs::exists(whole))
-        fs::rename(path, whole);
-      else
-        fs::remove_all(path);
+      if (path.extension() == kOld && !fs::exists(whole)) fs::rename(path, whole);
     }
+  });
+}
+
+void CheckpointFolder::clean() const {
+  recover();
+  or_file_error("clean", path_, [&] {
+    for (const fs::path& path : unfinished_in(path_)) fs::remove_all(path);
   });
 }
 

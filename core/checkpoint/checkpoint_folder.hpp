@@ -12,6 +12,7 @@ namespace barchan {
 ///
 ///     step_000000500/       complete: manifest.json, rank_00000.bin, rank_00001.bin, …
 ///     step_000001000.part/  being written, or left by a run that ended meanwhile
+///     step_000000500.old/   the one of this step before, for the moment in which it is replaced
 ///
 /// A checkpoint is complete or not there: its files are on the disk before its manifest, the
 /// manifest before the folder gets its name. Errors of all that writes: FileError.
@@ -30,7 +31,10 @@ class CheckpointFolder {
   void commit(const Manifest& manifest) const;
   /// Removes an unfinished one that shall not be finished. One rank. Never throws.
   void discard(std::int64_t step) const noexcept;
-  /// Removes all unfinished ones. One rank, while nobody writes.
+  /// A run that ended while it replaced a checkpoint of the same step has left the former one under
+  /// another name: gives it back its own. One rank, while nobody writes.
+  void recover() const;
+  /// Recovers, then removes all unfinished ones. One rank, while nobody writes.
   void clean() const;
   /// After a commit at `step`: keeps the newest `keep`, and none of later steps, which an abandoned
   /// run left. One rank.

@@ -2,6 +2,7 @@
 
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -46,6 +47,35 @@ std::string kept_rows(std::string_view text, const std::string& path, const std:
   return kept;
 }
 
+std::string damage_of_rows(std::string_view kept, std::int64_t restart, std::int64_t interval) {
+  LineReader lines(kept, "");
+  std::string_view line;
+  if (!lines.next(line)) return "there is no header";
+  const auto num_columns = std::count(line.begin(), line.end(), ',');
+  std::vector<std::int64_t> steps;
+  while (lines.next(line)) {
+    std::int64_t step = -1;
+    std::from_chars(line.data(), line.data() + line.size(), step);
+    if (std::count(line.begin(), line.end(), ',') != num_columns)
+      return fmt::format("the row of step {} has other columns than the header", step);
+    if (!steps.empty() && step <= steps.back())
+      return fmt::format("step {} comes after step {}", step, steps.back());
+    steps.push_back(step);
+  }
+  if (steps.empty()) return fmt::format("there is no row before step {}", restart);
+  steps.push_back(restart);  // its own row is about to be written
+  std::int64_t before = interval;
+  for (std::size_t i = 1; i < steps.size(); ++i) {
+    const std::int64_t gap = steps[i] - steps[i - 1];
+    const bool is_of_rows = i + 2 < steps.size();  // the last gap may be any part of an interval
+    const std::int64_t after = is_of_rows ? steps[i + 1] - steps[i] : interval;
+    if (gap > before && gap > after)
+      return fmt::format("rows between step {} and step {} are missing", steps[i - 1], steps[i]);
+    before = gap;
+  }
+  return {};
+}
+
 SeriesWriter::SeriesWriter(std::string path, std::size_t num_further, const char* mode)
     : path_(std::move(path)), num_further_(num_further), file_(std::fopen(path_.c_str(), mode)) {
   if (file_ == nullptr) throw RunError("cannot create " + path_ + ": " + std::strerror(errno));
@@ -59,6 +89,13 @@ SeriesWriter::SeriesWriter(SeriesWriter&& other) noexcept
 
 SeriesWriter::~SeriesWriter() {
   if (file_ != nullptr) std::fclose(file_);
+}
+
+std::string SeriesWriter::damage(std::int64_t restart, std::int64_t interval) const {
+  const std::string what = damage_of_rows(read_text_file(path_), restart, interval);
+  if (what.empty()) return {};
+  return path_ + ": " + what +
+         "; it was changed since the run wrote it, and further rows are appended to what is there";
 }
 
 SeriesWriter SeriesWriter::create(const std::string& path,

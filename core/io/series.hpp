@@ -23,6 +23,12 @@ struct SeriesRow {
 [[nodiscard]] std::string kept_rows(std::string_view text, const std::string& path,
                                     const std::string& header, std::int64_t step);
 
+/// What is odd about the rows of a series up to a restart, in words; empty where nothing is. Rows
+/// must be as long as the header, ascend, and leave no gap wider than those beside it.
+/// @param interval  steps between rows from here on
+[[nodiscard]] std::string damage_of_rows(std::string_view kept, std::int64_t restart,
+                                         std::int64_t interval);
+
 /// The table of a run over time: `step,time,kinetic_energy,contacts,max_overlap`, then columns of
 /// the caller. Each row is on its way to the disk before append() returns. One writer per file
 /// (rank 0).
@@ -40,6 +46,9 @@ class SeriesWriter {
   ~SeriesWriter();
   SeriesWriter(SeriesWriter&& other) noexcept;
   SeriesWriter& operator=(SeriesWriter&&) = delete;
+
+  /// What was odd about the rows that were kept, with the file's name; empty where nothing was.
+  [[nodiscard]] std::string damage(std::int64_t restart, std::int64_t interval) const;
 
   /// @pre further has one value for each further column
   /// @throws RunError also when somebody else removed or changed the file meanwhile

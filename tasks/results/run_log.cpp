@@ -47,15 +47,19 @@ void RunLog::add(const std::string& line) {
   std::fclose(file);
 }
 
+void RunLog::warn(const std::string& text) {
+  if (path_.empty()) return;
+  add("warning: " + text);
+  warnings_.push_back(text);
+}
+
 void RunLog::take_notes(Simulation& simulation) {
   const auto of_ranks = simulation.communicator().gather(packed(simulation.take_notes()));
   for (const std::string& notes : of_ranks) {
     for (std::size_t begin = 0; begin < notes.size();) {
       const std::size_t end = notes.find('\n', begin);
       const std::string text = notes.substr(begin + 1, end - begin - 1);
-      const bool is_warning = notes[begin] == kWarning;
-      add(is_warning ? "warning: " + text : text);
-      if (is_warning) warnings_.push_back(text);
+      notes[begin] == kWarning ? warn(text) : add(text);
       begin = end + 1;
     }
   }

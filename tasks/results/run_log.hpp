@@ -19,7 +19,9 @@ class RunLog {
   void take_notes(Simulation& simulation);
   /// A line of the caller. On rank 0; elsewhere nothing happens. Local.
   void add(const std::string& line);
-  /// Warnings among the notes, since the last call. On rank 0; local.
+  /// A line that take_warnings() tells as well. On rank 0; local.
+  void warn(const std::string& text);
+  /// Warnings, those among the notes too, since the last call. On rank 0; local.
   [[nodiscard]] std::vector<std::string> take_warnings();
 
  private:

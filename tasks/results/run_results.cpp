@@ -43,6 +43,8 @@ RunResults::RunResults(Simulation& simulation, RunFolder folder, const ParticleS
   list_departures();
   series_.emplace(simulation, folder_.file("series.csv"), spec_.rings, continues);
   if (continues) {
+    if (const auto damage = series_->damage(simulation, series_every_); !damage.empty())
+      log_->warn(damage);
     snapshots_.resume(simulation, snapshots_every_);
     write();
     return;

@@ -76,6 +76,10 @@ SeriesTable::SeriesTable(const Simulation& simulation, const std::string& path,
   });
 }
 
+std::string SeriesTable::damage(const Simulation& simulation, std::int64_t interval) const {
+  return writer_ ? writer_->damage(simulation.step(), interval) : "";
+}
+
 Measures SeriesTable::append(Simulation& simulation) {
   const Measures m = simulation.measure();
   const std::vector<double> diameters = ring_diameters(simulation, rings_);

@@ -19,6 +19,11 @@ class SeriesTable {
   SeriesTable(const Simulation& simulation, const std::string& path, std::vector<Ring> rings,
               bool continues = false);
 
+  /// Words of warning where rows before a restart are not as a run leaves them; empty elsewhere. On
+  /// rank 0; local.
+  /// @param interval  steps between rows from here on
+  [[nodiscard]] std::string damage(const Simulation& simulation, std::int64_t interval) const;
+
   /// A row of the state as it is. Collective. @return what was measured. Errors: RunError.
   Measures append(Simulation& simulation);
 

@@ -19,6 +19,8 @@ def check_probe():
     expect(all(row["half_round_trip_seconds"] > 0 for row in report["exchanges"]), "a half round trip of nothing")
     done = run("probe")
     expect(done.returncode == 2 and len(messages(done)) == 1, f"probe on one rank: {done}")
+    done = run("probe", "--bytes", "3000000000", ranks=2)
+    expect(done.returncode == 2 and len(messages(done)) == 1, f"probe of messages that no call moves: {done}")
     done = run("probe", "--exchange", "put-flog", ranks=2)
     expect(done.returncode == 2 and "put-flag" in done.stderr, f"probe of an unknown exchange: {done}")
 

@@ -137,6 +137,21 @@ def check_damaged_checkpoints(undisturbed):
     expect(digest_of(out) == undisturbed, "damaged checkpoints: another digest")
 
 
+def check_series_changed_between_runs():
+    """Whoever cuts a series is told at the restart, which goes on."""
+    out = "edited.out"
+    fresh(out)
+    expect(run("run", "saved.toml", "--out", out, "--quiet", "--steps", "150").returncode == 0, "the run before an edit")
+    with open(out + "/series.csv", encoding="utf-8") as file:
+        rows = file.readlines()
+    write(out + "/series.csv", "".join(rows[:20]))
+    done = run("run", "saved.toml", "--out", out, "--quiet", "--restart", "auto", ranks=2)
+    expect(done.returncode == 0, f"edited series: {done.stderr}")
+    expect(any("warning" in line and "series.csv: rows between step" in line for line in messages(done)),
+           f"edited series: {done.stderr}")
+    expect("warning: " in log_of(out), "edited series: the log has no warning")
+
+
 atexit.register(unmount)
 fresh("undisturbed.out")
 first = run("run", "saved.toml", "--out", "undisturbed.out", "--quiet")
@@ -144,6 +159,7 @@ expect(first.returncode == 0, first.stderr)
 expected = digest_of("undisturbed.out")
 timed(check_files_in_the_way)
 timed(check_damaged_checkpoints, expected)
+timed(check_series_changed_between_runs)
 if mount("1m"):
     unmount()
     for num_ranks in (1, 2):

@@ -428,6 +428,20 @@ TEST(Checkpoints, AreFoundNewestFirstAndDamagedOnesAreSkippedWithReasons) {
   EXPECT_EQ(find_checkpoint(world, folder.path())->skipped.size(), 0U);
 }
 
+TEST(Checkpoints, AreFoundThatAnEndedRunWasAboutToReplace) {
+  const Scenario s = moving_walls();
+  const SharedFolder folder;
+  const Communicator world = Communicator::world();
+  (void)whole_run(s, MPI_COMM_WORLD, with_threads(1), 100, folder.path());
+  if (world.is_root()) fs::rename(folder.at(100), folder.at(100) + ".old");
+  world.barrier();
+
+  const auto choice = find_checkpoint(world, folder.path());
+
+  ASSERT_TRUE(choice.has_value());
+  EXPECT_EQ(choice->path, folder.at(100));
+}
+
 TEST(Restart, RefusesAnotherDeckAndSaysWhatDiffers) {
   Scenario s = moving_walls();
   const SharedFolder folder;

@@ -60,5 +60,31 @@ TEST_F(Series, StartsAnewWithoutAFile) {
   EXPECT_THROW(SeriesWriter::create("/no/such/folder/series.csv", columns_), RunError);
 }
 
+std::string rows(std::initializer_list<int> steps) {
+  std::string text = "step,time\n";
+  for (const int step : steps) text += std::to_string(step) + ",0\n";
+  return text;
+}
+
+TEST(DamageOfRows, IsNoneWhereARunWasLeftAlone) {
+  EXPECT_EQ(damage_of_rows(rows({0, 100, 200, 300}), 350, 100), "");
+  EXPECT_EQ(damage_of_rows(rows({0, 100, 200, 300}), 350, 10), "");  // rows come more often now
+  EXPECT_EQ(damage_of_rows(rows({0, 10, 20, 100, 200}), 250, 100), "");
+  EXPECT_EQ(damage_of_rows(rows({400, 500}), 600, 100), "");  // of a run that began at 400
+}
+
+TEST(DamageOfRows, IsTold) {
+  EXPECT_EQ(damage_of_rows(rows({}), 350, 100), "there is no row before step 350");
+  EXPECT_EQ(damage_of_rows(rows({0, 100}), 350, 100),
+            "rows between step 100 and step 350 are missing");
+  EXPECT_EQ(damage_of_rows(rows({0, 100, 400, 500}), 550, 100),
+            "rows between step 100 and step 400 are missing");
+  EXPECT_EQ(damage_of_rows(rows({0, 300, 400}), 450, 100),
+            "rows between step 0 and step 300 are missing");
+  EXPECT_EQ(damage_of_rows(rows({0, 200, 100}), 350, 100), "step 100 comes after step 200");
+  EXPECT_EQ(damage_of_rows("step,time\n0,0,0\n", 350, 100),
+            "the row of step 0 has other columns than the header");
+}
+
 }  // namespace
 }  // namespace barchan
