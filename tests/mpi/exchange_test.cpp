@@ -188,7 +188,9 @@ TEST_P(ExchangeOfEveryKind, KeepsTheBytesBehindRandomDelays) {
 // The `return` scheme: a band goes right, and only the neighbour's answer to it goes left.
 TEST_P(ExchangeOfEveryKind, AnswersWithinTheStepWhereSidesMayBeUneven) {
   const auto exchange = make({.halo_bytes = 2000});
-  if (!exchange->allows_uneven_sides()) GTEST_SKIP() << "both sides go in step here";
+  const bool is_even = std::string(GetParam().exchange) == "fence";
+  EXPECT_EQ(exchange->allows_uneven_sides(), !is_even);
+  if (is_even) return;
 
   for (int step = 0; step < 200; ++step) {
     send(*exchange, Side::Right, step, 2000);
@@ -267,14 +269,15 @@ TEST(Exchange, TellsTheKnownNamesWhenAskedForAnUnknownOne) {
 
 TEST(Exchange, MixesUseEachKindWhereItsNeighboursAre) {
   const auto comm = Communicator::world();
-  if (comm.size() < 3) GTEST_SKIP() << "needs links of both kinds";
   const auto neighbours = strip_neighbours(comm.rank(), comm.size(), false);
   ExchangeOptions options;
   options.ranks_per_node = 2;
 
   const auto exchange = make_exchange("shared+isend", comm, neighbours, options);
 
-  EXPECT_EQ(exchange->stats().transport, "shared memory and two-sided");
+  const bool has_both = comm.size() > 2;
+  EXPECT_EQ(exchange->stats().transport,
+            has_both ? "shared memory and two-sided" : "shared memory");
 }
 
 TEST(Exchange, RefusesAFenceInAMixAndMessagesThatDoNotFitIntoMemory) {
