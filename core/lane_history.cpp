@@ -45,7 +45,12 @@ void Lane<Dim>::collect_history(std::array<Migration<Dim>, 2>& leaving,
       keep_staying(lists_[side == Left ? InnerLow : InnerHigh], block, leaving, number);
   }
   imbalance_.contacts -= static_cast<std::int64_t>(kept_.size());
-  if (kept_.capacity() > kept_.size() + kept_.size() / 2) kept_.shrink_to_fit();
+  if (kept_.capacity() > kept_.size() + kept_.size() / 8 + 2 * kBlockPairs) {
+    std::vector<KeptContact> fitting;
+    fitting.reserve(kept_.size() + kept_.size() / 16 + kBlockPairs);
+    fitting.assign(kept_.begin(), kept_.end());
+    kept_.swap(fitting);
+  }
   for (const Side side : {Left, Right}) {
     const PairList& list = bands_[side].across;
     for (const PairBlock& block : bands_[side].blocks) {
