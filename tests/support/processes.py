@@ -1,5 +1,7 @@
 """Processes below another one, from /proc: `ps` may not be installed."""
 import os
+import signal
+import subprocess
 
 
 def children_of(parent):
@@ -33,3 +35,17 @@ def is_there(pid):
             return file.read().rsplit(")", 1)[1].split()[0] not in "ZX"
     except OSError:
         return False
+
+
+def output_after_kill(process, seconds):
+    """stdout and stderr of a run under mpirun of which a rank was killed. Open MPI's mpirun may hang for ever over a rank
+    that was killed as it began; then all is ended."""
+    try:
+        return process.communicate(timeout=seconds)
+    except subprocess.TimeoutExpired:
+        for pid in children_of(process.pid) + [process.pid]:
+            try:
+                os.kill(pid, signal.SIGKILL)
+            except ProcessLookupError:
+                pass
+        return process.communicate()
