@@ -13,31 +13,11 @@
 
 #include <barchan/core/error.hpp>
 
+#include "running.hpp"
 #include "scenarios.hpp"
 
 namespace barchan::test {
 namespace {
-
-using Words = std::vector<std::uint64_t>;
-
-int num_ranks() {
-  int size = 1;
-  MPI_Comm_size(MPI_COMM_WORLD, &size);
-  return size;
-}
-
-bool is_root() {
-  int rank = 0;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  return rank == 0;
-}
-
-RunOptions with_threads(int threads, const std::string& exchange = "put-flag") {
-  RunOptions options;
-  options.threads = threads;
-  options.exchange = exchange;
-  return options;
-}
 
 /// Whatever rank 0 has, on every rank.
 Words from_root(Words words) {
@@ -179,28 +159,28 @@ TEST(Outside, IsAnErrorThatNamesTheParticleUnlessTheModelSaysOtherwise) {
   EXPECT_TRUE(can_go_on);
 }
 
+/// What every rank says when something was lost in the rebuild after a step.
+void expect_loss_told(const Scenario& s, int threads, Loss what, std::int64_t step,
+                      const std::string& told) {
+  RunOptions options = with_threads(threads);
+  options.loss = {what, step};
+  expect_on_all_ranks(error_of(s, options), {told});
+}
+
 TEST(Balance, ALostParticleIsToldOnEveryRank) {
-  RunOptions options = with_threads(2);
-  options.loss = {Loss::Particle, 50};
-  expect_on_all_ranks(error_of(soil_with_ring_and_plate(), options), {"1 particle too few"});
+  expect_loss_told(soil_with_ring_and_plate(), 2, Loss::Particle, 50, "1 particle too few");
 }
 
 TEST(Balance, ALostContactIsToldOnEveryRank) {
-  RunOptions options = with_threads(1);
-  options.loss = {Loss::Contact, 200};
-  expect_on_all_ranks(error_of(soil_with_ring_and_plate(), options), {"1 contact too few"});
+  expect_loss_told(soil_with_ring_and_plate(), 1, Loss::Contact, 200, "1 contact too few");
 }
 
 TEST(Balance, ALostContactWithAWallIsToldOnEveryRank) {
-  RunOptions options = with_threads(1);
-  options.loss = {Loss::WallContact, 200};
-  expect_on_all_ranks(error_of(soil_with_ring_and_plate(), options), {"1 contact with a wall"});
+  expect_loss_told(soil_with_ring_and_plate(), 1, Loss::WallContact, 200, "1 contact with a wall");
 }
 
 TEST(Balance, ALostBondIsToldOnEveryRank) {
-  RunOptions options = with_threads(1);
-  options.loss = {Loss::Bond, 50};
-  expect_on_all_ranks(error_of(breaking_plate(2), options), {"1 bond too few"});
+  expect_loss_told(breaking_plate(2), 1, Loss::Bond, 50, "1 bond too few");
 }
 
 /// Notes of all ranks on rank 0.
@@ -292,16 +272,7 @@ TEST(Watch, AWallThatOutrunsTheSkinIsNoticed) {
   Scenario s = moving_walls();
   s.num_steps = 2000;
   s.model.gravity = Vec3::Zero();
-  WallSpec plate;
-  plate.name = "hammer";
-  plate.kind = WallKind::Plate;
-  plate.point = Vec3(2.0, 0.95, 0.0);
-  plate.normal = Vec3(0.0, -1.0, 0.0);
-  plate.width = 0.5;
-  plate.is_loaded = true;
-  plate.load = 5e4;  // [N/m] on 1 kg: faster than any check expects
-  plate.mass = 0.01;
-  s.model.walls.push_back(plate);
+  s.model.walls.push_back(loaded_plate(0.95, 0.5, 5e4, 0.01));  // faster than any check expects
   expect_on_all_ranks(error_of(s, with_threads(1)), {"a particle or wall had moved", "the skin"});
 }
 

@@ -36,6 +36,21 @@ inline ContactConstants soft_contact(double kn, double mu) {
   return c;
 }
 
+/// Above the middle of a box of four metres, pressing down.
+/// @param load  [N/m²], in 2D [N/m]. @param mass  [kg]
+inline WallSpec loaded_plate(double height, double width, double load, double mass) {
+  WallSpec plate;
+  plate.name = "plate";
+  plate.kind = WallKind::Plate;
+  plate.point = Vec3(2.0, height, 0.0);
+  plate.normal = Vec3(0.0, -1.0, 0.0);
+  plate.width = width;
+  plate.is_loaded = true;
+  plate.load = load;
+  plate.mass = mass;
+  return plate;
+}
+
 /// One material, a box as deep as a metre, one stage. @param length  along x
 inline Model plain_model(int dimension, double length, double height) {
   Model m;
@@ -172,18 +187,9 @@ inline Scenario soil_with_ring_and_plate() {
                 true};
   m.bond_laws = {weak_bond(std::numeric_limits<double>::infinity())};
   add_box_walls(m);
-  WallSpec plate;
-  plate.name = "plate";
-  plate.kind = WallKind::Plate;
-  plate.point = Vec3(2.0, 1.25, 0.0);
-  plate.normal = Vec3(0.0, -1.0, 0.0);
-  plate.width = 1.0;
-  plate.is_loaded = true;
-  plate.load = 50.0;
-  plate.mass = 5.0;
-  plate.damping = 50.0;
-  plate.from_stage = 1;
-  m.walls.push_back(plate);
+  m.walls.push_back(loaded_plate(1.25, 1.0, 50.0, 5.0));
+  m.walls.back().damping = 50.0;
+  m.walls.back().from_stage = 1;
   m.stages = {Stage{"settle", 0.3, 0.02, 0.0}, Stage{"load", 0.1}};
   shuffle_ids(s.set, 1);
   return s;

@@ -14,6 +14,7 @@
 
 #include <barchan/core/kernels/kernel_set.hpp>
 
+#include "running.hpp"
 #include "scenarios.hpp"
 
 namespace barchan::test {
@@ -26,18 +27,6 @@ struct Outcome {
 
   void add(double value) { words.push_back(std::bit_cast<std::uint64_t>(value)); }
 };
-
-int num_ranks() {
-  int size = 1;
-  MPI_Comm_size(MPI_COMM_WORLD, &size);
-  return size;
-}
-
-bool is_root() {
-  int rank = 0;
-  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-  return rank == 0;
-}
 
 /// Runs in `pieces`, measuring between them, which must not change a bit.
 Outcome outcome_of(const Scenario& s, MPI_Comm comm, const RunOptions& options, int pieces) {

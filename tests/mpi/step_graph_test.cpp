@@ -5,16 +5,11 @@
 
 #include <barchan/tasks/strip_plan.hpp>
 
+#include "running.hpp"
 #include "scenarios.hpp"
 
 namespace barchan::test {
 namespace {
-
-int num_ranks() {
-  int size = 1;
-  MPI_Comm_size(MPI_COMM_WORLD, &size);
-  return size;
-}
 
 /// A gas in a box just long enough for so many strips of one lane.
 Scenario narrow_gas(int num_strips, bool is_periodic) {
