@@ -57,7 +57,7 @@ TEST(Checkpoints, ComeByTheClock) {
 TEST(Checkpoints, ThatCannotBeWrittenAreWarningsAndTheRunGoesOn) {
   const Scenario s = moving_walls();
   const SharedFolder folder;
-  const bool is_root = is_root();
+  const bool is_root = test::is_root();
   Simulation sim(s.model, s.set, MPI_COMM_WORLD, with_threads(1));
   sim.keep_checkpoints(folder.path() + "/sub", {50, 0.0, 2});
   sim.run(60);

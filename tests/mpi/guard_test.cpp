@@ -161,7 +161,7 @@ TEST(Outside, IsAnErrorThatNamesTheParticleUnlessTheModelSaysOtherwise) {
 
 /// What every rank says when something was lost in the rebuild after a step.
 void expect_loss_told(const Scenario& s, int threads, Loss what, std::int64_t step,
-                      const std::string& told) {
+                      const char* told) {
   RunOptions options = with_threads(threads);
   options.loss = {what, step};
   expect_on_all_ranks(error_of(s, options), {told});

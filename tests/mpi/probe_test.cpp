@@ -81,7 +81,7 @@ TEST_F(Probe, ChoosesOneExchangeOnAllRanksAndMovesMessagesWithIt) {
   EXPECT_EQ(selected.choice.candidates.size(), names.size());
   EXPECT_NE(selected.choice.reason.find(selected.choice.name), std::string::npos);
   ExchangeProbe probe(comm_, neighbours_, *selected.exchange, 5000, 1e-3);
-  EXPECT_GT(probe.half_round_trip(), 0.0);
+  EXPECT_EQ(probe.half_round_trip() > 0.0, comm_.size() > 1);  // alone there is nobody to answer
 }
 
 }  // namespace
