@@ -115,7 +115,9 @@ class Simulation::EngineOf final : public Simulation::Engine {
   [[noreturn]] void report_fast(int lane);
   [[nodiscard]] std::vector<Departure> departures();
   void remove_outside();
-  [[nodiscard]] std::string describe(int lane, std::int32_t row);
+  [[nodiscard]] std::string describe(const Suspect& suspect,
+                                     const typename Lane<Dim>::Partners& touched) const;
+  [[nodiscard]] typename Lane<Dim>::Partners partners_of(const Suspect& suspect);
   [[nodiscard]] std::string from_rank_with_most(double mine, const std::string& text);
   [[nodiscard]] std::string describe_fastest();
   void note(std::string text, bool is_warning = false);

@@ -148,13 +148,10 @@ std::string Simulation::EngineOf<Dim>::from_rank_with_most(double mine, const st
 }
 
 template <int Dim>
-std::string Simulation::EngineOf<Dim>::describe(int l, std::int32_t row) {
-  Lane<Dim>& lane = strip_->lane(l);
-  const auto& store = lane.store();
-  const auto at = static_cast<std::size_t>(row);
-  std::string text = fmt::format("particle {} at {} with velocity {}", store.id[at],
-                                 in_brackets(store.x(row), Dim), in_brackets(store.v(row), Dim));
-  const auto touched = lane.partners(row);
+std::string Simulation::EngineOf<Dim>::describe(const Suspect& s,
+                                                const typename Lane<Dim>::Partners& touched) const {
+  const std::string text = fmt::format("particle {} at {} with velocity {}", s.id,
+                                       in_brackets(s.position, Dim), in_brackets(s.velocity, Dim));
   std::vector<std::string> names;
   for (const std::int64_t id : touched.ids) names.push_back(fmt::format("particle {}", id));
   for (const std::int32_t w : touched.walls)
@@ -162,46 +159,66 @@ std::string Simulation::EngineOf<Dim>::describe(int l, std::int32_t row) {
   if (names.empty()) return text + ", touching nothing";
   const std::size_t more = names.size() - std::min(names.size(), kMostPartners);
   names.resize(names.size() - more);
-  text += fmt::format(", touching {}", fmt::join(names, ", "));
-  return more == 0 ? text : text + fmt::format(" and {} more", more);
+  return fmt::format("{}, touching {}{}", text, fmt::join(names, ", "),
+                     more == 0 ? "" : fmt::format(" and {} more", more));
+}
+
+/// Every rank looks among its own particles, so that where the cuts are is not in the text.
+template <int Dim>
+typename Lane<Dim>::Partners Simulation::EngineOf<Dim>::partners_of(const Suspect& s) {
+  std::vector<std::int64_t> mine;
+  for (int l = 0; l < strip_->num_lanes(); ++l) strip_->lane(l).find_touching(s, mine);
+  typename Lane<Dim>::Partners found;
+  for (const auto& piece : communicator_.gather(std::as_bytes(std::span(mine)))) {
+    const std::size_t known = found.ids.size();
+    found.ids.resize(known + piece.size() / sizeof(std::int64_t));
+    if (!piece.empty()) std::memcpy(found.ids.data() + known, piece.data(), piece.size());
+  }
+  std::sort(found.ids.begin(), found.ids.end());
+  double to_wall[3] = {};
+  for (std::size_t w = 0; w < world_.walls.size(); ++w) {
+    if (world_.walls[w].is_active &&
+        WallContacts<Dim>::nearest(world_.wall_specs[w], world_.walls[w], s.position, to_wall) <
+            s.radius)
+      found.walls.push_back(static_cast<std::int32_t>(w));
+  }
+  return found;
 }
 
 template <int Dim>
 std::string Simulation::EngineOf<Dim>::describe_fastest() {
-  double most = -1.0;
-  std::string text = "no particle is left";
+  Suspect fastest;
   for (int l = 0; l < strip_->num_lanes(); ++l) {
     const std::int32_t row = strip_->lane(l).fastest_row();
     if (row < 0) continue;
-    double v2 = 0.0;
-    for (int c = 0; c < Dim; ++c) v2 += std::pow(strip_->lane(l).store().v(row)[c], 2);
-    if (!std::isfinite(v2)) v2 = std::numeric_limits<double>::max();
-    if (v2 <= most) continue;
-    most = v2;
-    text = describe(l, row);
+    const Suspect s = strip_->lane(l).suspect(row);
+    if (s.speed2 > fastest.speed2) fastest = s;
   }
-  return "the fastest is " + from_rank_with_most(most, text);
+  const std::string bytes = from_rank_with_most(
+      fastest.speed2, {reinterpret_cast<const char*>(&fastest), sizeof fastest});
+  std::memcpy(&fastest, bytes.data(), sizeof fastest);
+  if (fastest.id == 0) return "no particle is left";
+  return "the fastest is " + communicator_.bcast(describe(fastest, partners_of(fastest)));
 }
 
 /// This rank alone knows: the others may be in the midst of the next step.
 template <int Dim>
 void Simulation::EngineOf<Dim>::report_fast(int l) {
-  Lane<Dim>& lane = strip_->lane(l);
-  const std::int32_t row = lane.fastest_row();
-  const auto& store = lane.store();
-  bool is_finite = true;
-  for (int c = 0; c < Dim; ++c)
-    is_finite = is_finite && std::isfinite(store.v(row)[c] + store.x(row)[c]);
-  const double* was = store.reference.data() + std::size_t{Dim} * static_cast<std::size_t>(row);
-  throw RunError(fmt::format(
-      "in step {} {} (at {} when lists were last built): {} a smaller time.step, more damping or "
-      "less overlap at the start would help",
-      step_, describe(l, row), in_brackets(was, Dim),
-      is_finite
-          ? fmt::format("it moves farther in one step than half the skin of {:.3g} m, so that "
-                        "contacts may be missed;",
-                        world_.skin)
-          : "its state is no longer finite;"));
+  const Lane<Dim>& lane = strip_->lane(l);
+  const std::int32_t row = lane.first_fast_row();
+  const Suspect s = lane.suspect(row);
+  const double* was =
+      lane.store().reference.data() + std::size_t{Dim} * static_cast<std::size_t>(row);
+  throw StepError(
+      step_,
+      fmt::format("in step {} {} (at {} when lists were last built): {}; a smaller time.step, more "
+                  "damping or less overlap at the start would help",
+                  step_, describe(s, lane.partners_before_step(row)), in_brackets(was, Dim),
+                  s.speed2 < std::numeric_limits<double>::max()
+                      ? fmt::format("it moves farther in one step than half the skin of {:.3g} m, "
+                                    "so that contacts may be missed",
+                                    world_.skin)
+                      : "its state is no longer finite"));
 }
 
 template <int Dim>
