@@ -33,8 +33,13 @@ extern "C" void on_save_signal(int /*signal*/) {
   Simulation::request_checkpoint();
 }
 
-void catch_signals() {
+/// From the very beginning: a request to save waits for a state, and does not end the program.
+void catch_save_signal() {
   std::signal(SIGUSR1, on_save_signal);
+}
+
+/// Once there is something to save.
+void catch_signals() {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a full disk
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
@@ -150,6 +155,7 @@ Simulation begin(const Communicator& world, const RunOptions& options, const Loa
 }  // namespace
 
 void run_deck(const Communicator& world, const RunArguments& arguments) {
+  catch_save_signal();
   check_exchange(arguments.options.exchange, world);
   check_exchange(arguments.record, world);
   const RunFolder folder = folder_of(arguments);

@@ -3,8 +3,10 @@
 # command on two small decks. Any report ends its program with a status that is not 0, and so this script with 1.
 #
 # usage: tests/sanitizers/asan_ubsan.sh [FILTER]     FILTER: of GoogleTest, for a part
+#        tests/sanitizers/asan_ubsan.sh --part       what the suite runs: part.cpp, on one rank and on two
 #
-# Not in the suite, since it builds the tree once more: more than six minutes on two cores with other work. Suppressed are leaks of Open MPI alone: lsan.supp.
+# The whole builds the tree once more: more than six minutes on two cores with other work. The part takes core from the fuzzing
+# targets, which are built with the same sanitizers by clang++ (tests/fuzz/fuzz build). Suppressed are leaks of Open MPI alone: lsan.supp.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 . "$here/common.sh"
@@ -14,6 +16,15 @@ export ASAN_OPTIONS=fast_unwind_on_malloc=0:detect_stack_use_after_return=1:stri
 export UBSAN_OPTIONS=print_stacktrace=1
 export LSAN_OPTIONS=suppressions=$here/lsan.supp:print_suppressions=0
 
+if [[ $filter == --part ]]; then
+  build_part fuzz
+  step "one rank, 2 threads" "$part/sanitized_part" 2
+  for exchange in put-flag isend; do
+    step "2 ranks, 2 threads, $exchange" mpirun -n 2 "$part/sanitized_part" 2 "$exchange"
+  done
+  finish
+  exit 0
+fi
 build asan-ubsan unit_tests mpi_tests barchan
 cd "$work" || exit 1
 bin=$source/build/asan-ubsan

@@ -14,6 +14,18 @@ build() {
     cmake --build "build/$preset" --parallel "$(nproc)" --target "$@" || exit 1
 }
 
+# build_part NAME CMAKE_OPTION...: the small program of the suite (CMakeLists.txt), in build/NAME
+build_part() {
+  part=${BARCHAN_BUILD:-$source/build}/$1 launcher=()
+  shift
+  if command -v ccache > /dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
+  cmake -S "$source" -B "$part" -G Ninja -DBARCHAN_BUILD_SANITIZED=ON -DBARCHAN_BUILD_TESTS=OFF -DBARCHAN_BUILD_COMMAND=OFF \
+    -DBARCHAN_BUILD_BENCH=OFF -DBARCHAN_INSTALL=OFF -DBARCHAN_WERROR=OFF "${launcher[@]}" "$@" > "$work/output" || { cat "$work/output"; exit 1; }
+  cmake --build "$part" --target sanitized_part --parallel "$(nproc)" > "$work/output" || { tail -40 "$work/output"; exit 1; }
+  echo "build: $SECONDS s"
+  cd "$work" || exit 1
+}
+
 # step NAME COMMAND...: any status but 0 is a failure; reports go to the standard error output as they come
 step() {
   local name=$1 begin=$SECONDS status=0
