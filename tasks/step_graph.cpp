@@ -147,6 +147,7 @@ StepTimes StepGraph<Dim>::times() const {
   times.send = share * static_cast<double>(send_ns_);
   times.poll = share * static_cast<double>(poll_ns_);
   times.wait = share * static_cast<double>(wait_ns_);
+  times.late = share * static_cast<double>(late_ns_);
   times.in_flight = kSecond * static_cast<double>(flight_ns_);
   return times;
 }
@@ -176,12 +177,12 @@ void StepGraph<Dim>::run_chunk(int l, int chunk) {
   const std::int64_t end = now_ns();
   nodes.chunk_ns += end - begin;
   if (trace_ != nullptr) trace_->slice(Trace::Slice::Chunk, l, begin, end);
-  try_poll();
+  try_poll(end);
   if (chunk + 1 < lane.num_chunks()) {
     put(*nodes.chunk, chunk + 1);
     return;
   }
-  nodes.idle_since = now_ns();
+  if (strip_.num_lanes() > 1) nodes.idle_since = now_ns();
   // Counted before its band may start: on another worker the band looks whether it is the last.
   const bool band_drains = strip_.num_lanes() == 1 && has_band(l, Side::Left) && arrived_[0];
   const bool is_last = lanes_left_.fetch_sub(1) == 1;
@@ -270,7 +271,12 @@ void StepGraph<Dim>::notice(Side side) {
   const int lane = side == Side::Left ? 0 : strip_.num_lanes() - 1;
   const std::int64_t since = nodes_[static_cast<std::size_t>(lane)].idle_since;
   const std::int64_t until = drain_begin_ != 0 ? drain_begin_ : now;
-  if (strip_.num_lanes() > 1 && since != 0 && since < until) wait_ns_ += until - since;
+  const std::int64_t posted = strip_.posted_at(side);
+  if (drain_begin_ != 0) posted_at_ = std::max(posted_at_, posted);
+  if (strip_.num_lanes() > 1 && since != 0 && since < until) {
+    wait_ns_ += until - since;
+    late_ns_ += std::clamp<std::int64_t>(posted - since, 0, until - since);
+  }
   arrived_[index_of(side)] = true;
   if (arrived_[0] && arrived_[1] && sent_at_ != 0) flight_ns_ += now - sent_at_;
   if (trace_ != nullptr) trace_->noticed(side, trace_->step(), now);
@@ -290,13 +296,14 @@ void StepGraph<Dim>::drive() {
 }
 
 template <int Dim>
-void StepGraph<Dim>::try_poll() {
+void StepGraph<Dim>::try_poll(std::int64_t begin) {
   const bool all_is_in = arrived_[0] && arrived_[1];
-  if (all_is_in && (strip_.exchange() == nullptr || driver_)) return;
+  if (all_is_in &&
+      (strip_.exchange() == nullptr || driver_ || !strip_.exchange()->needs_progress()))
+    return;
   const std::unique_lock<std::mutex> lock(comm_mutex_, std::try_to_lock);
   if (!lock.owns_lock()) return;
   const std::array<bool, 2> before{arrived_[0], arrived_[1]};
-  const std::int64_t begin = now_ns();
   if (all_is_in)
     strip_.exchange()->progress();
   else
@@ -318,11 +325,19 @@ void StepGraph<Dim>::drain(bool may_leave) {
   {
     const std::unique_lock<std::mutex> lock(comm_mutex_);
     drain_begin_ = begin;
+    posted_at_ = 0;
   }
   poll_until_in(may_leave);
-  const std::int64_t end = now_ns(), idle = strip_.num_lanes() * (end - begin) - (busy_ns_ - busy);
+  const std::int64_t end = now_ns(), waited = end - begin,
+                     idle = strip_.num_lanes() * waited - (busy_ns_ - busy);
   const std::unique_lock<std::mutex> lock(comm_mutex_);
-  wait_ns_ += std::max(end - begin, idle);
+  const std::int64_t all = std::max(waited, idle);
+  wait_ns_ += all;
+  // Of that the share before the last message left its sender.
+  const std::int64_t late = std::clamp<std::int64_t>(posted_at_ - begin, 0, waited);
+  if (late > 0)
+    late_ns_ += static_cast<std::int64_t>(static_cast<double>(all) * static_cast<double>(late) /
+                                          static_cast<double>(waited));
   if (trace_ != nullptr) trace_->slice(Trace::Slice::Wait, 0, begin, end);
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <barchan/comm/clock.hpp>
+#include <barchan/comm/links.hpp>
 #include <barchan/comm/watchdog.hpp>
 #include <barchan/core/error.hpp>
 
@@ -25,6 +26,13 @@ Strip<Dim>::Strip(World<Dim>& world, const Communicator& communicator,
       posts_(static_cast<std::size_t>(num_lanes)) {
   for (int l = 0; l < num_lanes; ++l) lanes_.push_back(std::make_unique<Lane<Dim>>(world));
   place_bands();
+  if (!exchange_) return;
+  const auto nodes = nodes_of_ranks(communicator);
+  const std::int64_t mine = nodes[static_cast<std::size_t>(communicator.rank())];
+  for (const Side side : kSides) {
+    shares_clock_[index_of(side)] =
+        neighbours_.has(side) && nodes[static_cast<std::size_t>(neighbours_.rank(side))] == mine;
+  }
 }
 
 template <int Dim>
