@@ -8,6 +8,7 @@
 #include <thread>
 
 #include <barchan/app/command_line.hpp>
+#include <barchan/comm/first_to_fail.hpp>
 #include <barchan/comm/watchdog.hpp>
 #include <barchan/core/error.hpp>
 #include <barchan/tasks/results/agree.hpp>
@@ -43,6 +44,15 @@ void give_way(std::chrono::seconds turn) {
   world.abort(kFailed);
 }
 
+/// An error of a step, which others may have found too, there or in the next one.
+[[noreturn]] void end_in_step(const Communicator& world, const StepError& error,
+                              const std::string& what) {
+  std::signal(SIGTERM, SIG_DFL);
+  if (!is_first_to_fail(world, error.step(), kTurn) || stop_is_requested()) give_way(kEnd);
+  print_error(what);
+  world.abort(kFailed);
+}
+
 /// Every rank is here with the same words.
 [[noreturn]] void end_together(const Communicator& world, const std::string& what) {
   if (world.is_root())
@@ -59,6 +69,8 @@ int fail(const Communicator* world, const std::exception& error, const std::stri
     return kFailed;
   }
   if (dynamic_cast<const CommonError*>(&error) != nullptr) end_together(*world, what);
+  if (const auto* in_step = dynamic_cast<const StepError*>(&error))
+    end_in_step(*world, *in_step, what);
   end_alone(*world, what);
 }
 

@@ -13,6 +13,15 @@ struct Departure {
   double velocity[3] = {};  ///< [m/s]
 };
 
+/// A particle that a run is about to end for. Plain data: it travels between ranks.
+struct Suspect {
+  std::int64_t id = 0;      ///< 0: there is none
+  double position[3] = {};  ///< [m]
+  double velocity[3] = {};  ///< [m/s]
+  double radius = 0.0;      ///< [m]
+  double speed2 = -1.0;  ///< squared speed [m²/s²]; the largest number when something is not finite
+};
+
 /// What overlaps most, as a share of the smaller radius.
 struct WorstOverlap {
   double share = 0.0;

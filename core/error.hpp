@@ -34,6 +34,17 @@ class RunError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A RunError that a rank finds alone, in a step. Others may find one as well: that of the first
+/// step, and of the lowest rank in it, is what one rank with all particles would have found.
+class StepError : public RunError {
+ public:
+  StepError(std::int64_t step, const std::string& what) : RunError(what), step_(step) {}
+  [[nodiscard]] std::int64_t step() const { return step_; }
+
+ private:
+  std::int64_t step_;
+};
+
 /// A RunError that every rank throws with the same words, so that one says it for all.
 class CommonError : public RunError {
  public:

@@ -138,14 +138,21 @@ class Lane {
   // ---- what a run that goes wrong says (lane_watch.cpp), between steps
   /// A particle moved farther than half the skin in the last step, or is not finite.
   [[nodiscard]] bool is_fast() const { return speeds_.is_beyond; }
+  /// The first one that did, in canonical order. @pre is_fast()
+  [[nodiscard]] std::int32_t first_fast_row() const;
   /// The fastest one; one that is not finite before all others. -1: there is none
   [[nodiscard]] std::int32_t fastest_row() const;
-  /// What a row touches.
+  [[nodiscard]] Suspect suspect(std::int32_t row) const;
+  /// Ids of owned particles that touch another one, of any lane.
+  void find_touching(const Suspect& other, std::vector<std::int64_t>& ids) const;
+  /// What a row touched as the last step began. Of one that is not finite now nobody knows where it
+  /// was: all that was near it when lists were built. The published scheme knows ghosts on the
+  /// right as they were then.
   struct Partners {
-    std::vector<std::int64_t> ids;
-    std::vector<std::int32_t> walls;
+    std::vector<std::int64_t> ids;    ///< ascending
+    std::vector<std::int32_t> walls;  ///< ascending
   };
-  [[nodiscard]] Partners partners(std::int32_t row);
+  [[nodiscard]] Partners partners_before_step(std::int32_t row) const;
   [[nodiscard]] WorstOverlap worst_overlap() const;
 
   // ---- the rebuild (lane_rebuild.cpp), in this order
@@ -254,6 +261,8 @@ class Lane {
   void run_pairs(PairList& list, PairBlock& block, double travel);
   void run_touching(PairList& list, PairBlock& block, PairJob& pairs, double travel);
   [[nodiscard]] double packing_margin() const;  ///< [m]
+  /// Of a component of velocity: half the skin in a step [m/s].
+  [[nodiscard]] double most_speed() const { return 0.5 * world_->skin / world_->dt; }
   void pack(PairList& list, PairBlock& block, const std::uint8_t* masks);
   [[nodiscard]] bool packs() const {
     return world_->kernels.narrow != nullptr && world_->search == ContactSearchKind::Cells;

@@ -107,7 +107,7 @@ void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extra
               world_->dt,
               {frame_.gravity[0], frame_.gravity[1], frame_.gravity[2]},
               frame_.local_damping,
-              0.5 * world_->skin / world_->dt};
+              most_speed()};
   const RowKernel advance =
       frame_.local_damping != 0.0 ? world_->kernels.rows_damped : world_->kernels.rows;
   speeds_.add(advance(rows));

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <barchan/core/lane.hpp>
 
@@ -7,6 +8,10 @@
 
 namespace barchan {
 namespace {
+
+/// Squared distance of what touches, of what would be if it just did: where a particle was follows
+/// from where it is but for rounding.
+constexpr double kTouching = 1.0 - 1e-9;
 
 template <int Dim>
 void take_worst_pair(const ParticleStore<Dim>& store, const PeriodicBox& box, const PairList& list,
@@ -29,6 +34,14 @@ void take_worst_pair(const ParticleStore<Dim>& store, const PeriodicBox& box, co
     worst.wall = -1;
     std::copy_n(store.x(i), Dim, worst.position);
   }
+}
+
+/// The largest number when something is not finite.
+template <int Dim>
+double speed2(const ParticleStore<Dim>& store, std::int32_t row) {
+  double v2 = 0.0;
+  for (int c = 0; c < Dim; ++c) v2 += store.v(row)[c] * store.v(row)[c] + 0.0 * store.x(row)[c];
+  return std::isfinite(v2) ? v2 : std::numeric_limits<double>::max();
 }
 
 }  // namespace
@@ -80,28 +93,70 @@ LinkCounts Lane<Dim>::remove(std::span<const std::int64_t> ids) {
 }
 
 template <int Dim>
+std::int32_t Lane<Dim>::first_fast_row() const {
+  const double most = most_speed();
+  for (std::int32_t i = 0; i < store_.num_owned; ++i) {
+    for (int c = 0; c < Dim; ++c) {
+      if (!(std::fabs(store_.v(i)[c]) <= most) || !std::isfinite(store_.x(i)[c])) return i;
+    }
+  }
+  return fastest_row();
+}
+
+template <int Dim>
 std::int32_t Lane<Dim>::fastest_row() const {
   std::int32_t fastest = -1;
   double most = -1.0;
   for (std::int32_t i = 0; i < store_.num_owned; ++i) {
-    double v2 = 0.0;
-    for (int c = 0; c < Dim; ++c) v2 += store_.v(i)[c] * store_.v(i)[c] + 0.0 * store_.x(i)[c];
-    if (!std::isfinite(v2)) return i;
+    const double v2 = speed2(store_, i);
     if (v2 > most) fastest = i, most = v2;
   }
   return fastest;
 }
 
 template <int Dim>
-typename Lane<Dim>::Partners Lane<Dim>::partners(std::int32_t row) {
+Suspect Lane<Dim>::suspect(std::int32_t row) const {
+  Suspect s;
+  s.id = store_.id[static_cast<std::size_t>(row)];
+  std::copy_n(store_.x(row), Dim, s.position);
+  std::copy_n(store_.v(row), Dim, s.velocity);
+  s.radius = store_.radius(row);
+  s.speed2 = speed2(store_, row);
+  return s;
+}
+
+template <int Dim>
+void Lane<Dim>::find_touching(const Suspect& other, std::vector<std::int64_t>& ids) const {
+  for (std::int32_t i = 0; i < store_.num_owned; ++i) {
+    const double reach = store_.radius(i) + other.radius;
+    const std::int64_t id = store_.id[static_cast<std::size_t>(i)];
+    if (id != other.id &&
+        distance2<Dim>(world_->grid.box(), store_.x(i), other.position) < reach * reach)
+      ids.push_back(id);
+  }
+}
+
+template <int Dim>
+typename Lane<Dim>::Partners Lane<Dim>::partners_before_step(std::int32_t row) const {
   Partners found;
-  const PeriodicBox& box = world_->grid.box();
+  const auto before = [&](std::int32_t i) {
+    std::array<double, Dim> x;
+    const double drift = store_.is_owned(i) ? world_->dt : 0.0;  // ghosts have not moved yet
+    for (int c = 0; c < Dim; ++c)
+      x[static_cast<std::size_t>(c)] =
+          store_.x(i)[c] - (drift == 0.0 ? 0.0 : drift * store_.v(i)[c]);
+    return x;
+  };
+  const auto at = before(row);
+  const bool is_finite = speed2(store_, row) < std::numeric_limits<double>::max();
   const auto look = [&](const PairList& list) {
     for (std::size_t k = 0; k < list.i.size(); ++k) {
-      if (list.i[k] != row && list.j[k] != row) continue;
-      const double reach = store_.radius(list.i[k]) + store_.radius(list.j[k]);
-      if (distance2<Dim>(box, store_.x(list.i[k]), store_.x(list.j[k])) >= reach * reach) continue;
+      if ((list.i[k] != row && list.j[k] != row) || list.i[k] == store_.waste()) continue;
       const std::int32_t other = list.i[k] == row ? list.j[k] : list.i[k];
+      const double reach = store_.radius(row) + store_.radius(other);
+      if (is_finite && !(distance2<Dim>(world_->grid.box(), at.data(), before(other).data()) <
+                         kTouching * reach * reach))
+        continue;
       found.ids.push_back(store_.id[static_cast<std::size_t>(other)]);
     }
   };
@@ -109,12 +164,13 @@ typename Lane<Dim>::Partners Lane<Dim>::partners(std::int32_t row) {
   for (const Band& band : bands_) {
     if (band.exists) look(band.across);
   }
+  std::sort(found.ids.begin(), found.ids.end());
   double to_wall[3] = {};
   for (const WallContact<Dim>& c : walls_.list()) {
     const auto w = static_cast<std::size_t>(c.wall);
     if (c.row != row) continue;
-    if (WallContacts<Dim>::nearest(world_->wall_specs[w], world_->walls[w], store_.x(row),
-                                   to_wall) < store_.radius(row))
+    if (!is_finite || WallContacts<Dim>::nearest(world_->wall_specs[w], world_->walls[w], at.data(),
+                                                 to_wall) < store_.radius(row))
       found.walls.push_back(c.wall);
   }
   return found;
@@ -144,10 +200,16 @@ template std::vector<Departure> Lane<2>::outside(std::int64_t) const;
 template std::vector<Departure> Lane<3>::outside(std::int64_t) const;
 template bool Lane<2>::counts_bond(std::int32_t) const;
 template bool Lane<3>::counts_bond(std::int32_t) const;
+template std::int32_t Lane<2>::first_fast_row() const;
 template std::int32_t Lane<2>::fastest_row() const;
+template Suspect Lane<2>::suspect(std::int32_t) const;
+template void Lane<2>::find_touching(const Suspect&, std::vector<std::int64_t>&) const;
+template std::int32_t Lane<3>::first_fast_row() const;
 template std::int32_t Lane<3>::fastest_row() const;
-template Lane<2>::Partners Lane<2>::partners(std::int32_t);
-template Lane<3>::Partners Lane<3>::partners(std::int32_t);
+template Suspect Lane<3>::suspect(std::int32_t) const;
+template void Lane<3>::find_touching(const Suspect&, std::vector<std::int64_t>&) const;
+template Lane<2>::Partners Lane<2>::partners_before_step(std::int32_t) const;
+template Lane<3>::Partners Lane<3>::partners_before_step(std::int32_t) const;
 template WorstOverlap Lane<2>::worst_overlap() const;
 template WorstOverlap Lane<3>::worst_overlap() const;
 template LinkCounts Lane<2>::remove(std::span<const std::int64_t>);

@@ -110,18 +110,24 @@ class Simulation::EngineOf final : public Simulation::Engine {
   void judge(const CheckNumbers& answer);
   void judge_balance(const CheckNumbers& answer);
   void judge_overlap(double share);
-  [[noreturn]] void report_outrun(const CheckNumbers& answer);
-  [[noreturn]] void report_departures(const std::vector<Departure>& departures);
-  [[noreturn]] void report_fast(int lane);
   [[nodiscard]] std::vector<Departure> departures();
   void remove_outside();
-  [[nodiscard]] std::string describe(int lane, std::int32_t row);
-  [[nodiscard]] std::string from_rank_with_most(double mine, const std::string& text);
-  [[nodiscard]] std::string describe_fastest();
-  void note(std::string text, bool is_warning = false);
   void watch_overlap();
   void watch_growth();
   [[nodiscard]] double wall_distance2() const;
+  // engine_report.cpp
+  void note(std::string text, bool is_warning = false);
+  void note_departures(const std::vector<Departure>& left, std::int64_t contacts,
+                       std::int64_t bonds);
+  [[noreturn]] void report_outrun(const CheckNumbers& answer);
+  [[noreturn]] void report_departures(const std::vector<Departure>& departures);
+  [[noreturn]] void report_fast(int lane);
+  [[nodiscard]] std::string describe(const Suspect& suspect,
+                                     const typename Lane<Dim>::Partners& touched) const;
+  [[nodiscard]] typename Lane<Dim>::Partners partners_of(const Suspect& suspect);
+  [[nodiscard]] std::string describe_fastest();
+  [[nodiscard]] std::string describe_worst_overlap();
+  [[nodiscard]] std::string from_rank_with_most(double mine, const std::string& text);
   [[nodiscard]] std::vector<WallSums> wall_sums() const;
   [[nodiscard]] OwnedParticle particle(const ParticleStore<Dim>& store, std::int32_t i) const;
 

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,29 +10,15 @@
 #include <barchan/tasks/results/agree.hpp>
 
 // What can go wrong in a run: noticed with the checks of the rebuild schedule, at no message more,
-// and told with the particles that it is about. Only a run that ends or a particle that goes costs
-// messages of its own.
+// and told with the particles that it is about (engine_report.cpp). Only a run that ends or a
+// particle that goes costs messages of its own.
 
 namespace barchan {
 namespace {
 
 constexpr std::int64_t kOverlapEvery = 1000;  // steps between looks at overlaps, at least
-constexpr std::size_t kMostPartners = 6;      // that a message names
-
-std::string in_brackets(const double* v, int count) {
-  return fmt::format("({:.6g})", fmt::join(v, v + count, ", "));
-}
-
-std::string plural(std::int64_t count, const char* word) {
-  return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
-}
 
 }  // namespace
-
-template <int Dim>
-void Simulation::EngineOf<Dim>::note(std::string text, bool is_warning) {
-  notes_.push_back({fmt::format("step {}: {}", step_, text), is_warning});
-}
 
 template <int Dim>
 double Simulation::EngineOf<Dim>::wall_distance2() const {
@@ -122,89 +107,6 @@ void Simulation::EngineOf<Dim>::judge_balance(const CheckNumbers& answer) {
 }
 
 template <int Dim>
-void Simulation::EngineOf<Dim>::report_outrun(const CheckNumbers& answer) {
-  throw AgreedError(fmt::format(
-      "at step {} a particle or wall had moved {:.3g} m since the lists were built, more than half "
-      "the skin of {:.3g} m (largest speed {:.3g} m/s): contacts may have been missed; {}; give a "
-      "larger search.skin or a smaller time.step",
-      step_, answer.distance, world_.skin, answer.speed, describe_fastest()));
-}
-
-/// The text of the rank with the largest number; of equal ones, the lowest rank.
-template <int Dim>
-std::string Simulation::EngineOf<Dim>::from_rank_with_most(double mine, const std::string& text) {
-  const auto numbers = communicator_.gather(std::as_bytes(std::span(&mine, 1)));
-  const auto texts = communicator_.gather(text);
-  std::string chosen = text;
-  double most = -std::numeric_limits<double>::infinity();
-  for (std::size_t r = 0; r < numbers.size(); ++r) {
-    double number = 0.0;
-    std::memcpy(&number, numbers[r].data(), sizeof number);
-    if (number <= most) continue;
-    most = number;
-    chosen = texts[r];
-  }
-  return communicator_.bcast(chosen);
-}
-
-template <int Dim>
-std::string Simulation::EngineOf<Dim>::describe(int l, std::int32_t row) {
-  Lane<Dim>& lane = strip_->lane(l);
-  const auto& store = lane.store();
-  const auto at = static_cast<std::size_t>(row);
-  std::string text = fmt::format("particle {} at {} with velocity {}", store.id[at],
-                                 in_brackets(store.x(row), Dim), in_brackets(store.v(row), Dim));
-  const auto touched = lane.partners(row);
-  std::vector<std::string> names;
-  for (const std::int64_t id : touched.ids) names.push_back(fmt::format("particle {}", id));
-  for (const std::int32_t w : touched.walls)
-    names.push_back("wall '" + model_.walls[static_cast<std::size_t>(w)].name + "'");
-  if (names.empty()) return text + ", touching nothing";
-  const std::size_t more = names.size() - std::min(names.size(), kMostPartners);
-  names.resize(names.size() - more);
-  text += fmt::format(", touching {}", fmt::join(names, ", "));
-  return more == 0 ? text : text + fmt::format(" and {} more", more);
-}
-
-template <int Dim>
-std::string Simulation::EngineOf<Dim>::describe_fastest() {
-  double most = -1.0;
-  std::string text = "no particle is left";
-  for (int l = 0; l < strip_->num_lanes(); ++l) {
-    const std::int32_t row = strip_->lane(l).fastest_row();
-    if (row < 0) continue;
-    double v2 = 0.0;
-    for (int c = 0; c < Dim; ++c) v2 += std::pow(strip_->lane(l).store().v(row)[c], 2);
-    if (!std::isfinite(v2)) v2 = std::numeric_limits<double>::max();
-    if (v2 <= most) continue;
-    most = v2;
-    text = describe(l, row);
-  }
-  return "the fastest is " + from_rank_with_most(most, text);
-}
-
-/// This rank alone knows: the others may be in the midst of the next step.
-template <int Dim>
-void Simulation::EngineOf<Dim>::report_fast(int l) {
-  Lane<Dim>& lane = strip_->lane(l);
-  const std::int32_t row = lane.fastest_row();
-  const auto& store = lane.store();
-  bool is_finite = true;
-  for (int c = 0; c < Dim; ++c)
-    is_finite = is_finite && std::isfinite(store.v(row)[c] + store.x(row)[c]);
-  const double* was = store.reference.data() + std::size_t{Dim} * static_cast<std::size_t>(row);
-  throw RunError(fmt::format(
-      "in step {} {} (at {} when lists were last built): {} a smaller time.step, more damping or "
-      "less overlap at the start would help",
-      step_, describe(l, row), in_brackets(was, Dim),
-      is_finite
-          ? fmt::format("it moves farther in one step than half the skin of {:.3g} m, so that "
-                        "contacts may be missed;",
-                        world_.skin)
-          : "its state is no longer finite;"));
-}
-
-template <int Dim>
 std::vector<Departure> Simulation::EngineOf<Dim>::departures() {
   std::vector<Departure> mine;
   for (int l = 0; l < strip_->num_lanes(); ++l) {
@@ -224,19 +126,6 @@ std::vector<Departure> Simulation::EngineOf<Dim>::departures() {
     if (communicator_.is_root() && tell_departures_) tell_departures_(found);
   });
   return found;
-}
-
-template <int Dim>
-void Simulation::EngineOf<Dim>::report_departures(const std::vector<Departure>& left) {
-  const Departure& first = left.front();
-  throw AgreedError(
-      fmt::format("at step {} particle {} is out of the domain, at {} with velocity {}{}: enlarge "
-                  "domain.lo and domain.hi, put a wall there, or let particles go by "
-                  "domain.outside = \"delete\"",
-                  step_, first.id, in_brackets(first.position, Dim),
-                  in_brackets(first.velocity, Dim),
-                  left.size() == 1 ? "" : fmt::format(", and {} more are", left.size() - 1)),
-      true);
 }
 
 /// What is out of the domain now goes with the rebuild that follows.
@@ -262,10 +151,7 @@ void Simulation::EngineOf<Dim>::remove_outside() {
   left_.links.wall_contacts += gone[1];
   left_.links.bonds += gone[2];
   must_rebuild_ = true;
-  if (!communicator_.is_root()) return;
-  note(fmt::format("{} left the domain, the first is particle {} at {}; {} and {} went with it",
-                   plural(count, "particle"), ids.front(), in_brackets(left.front().position, Dim),
-                   plural(gone[0] + gone[1], "contact"), plural(gone[2], "bond")));
+  if (communicator_.is_root()) note_departures(left, gone[0] + gone[1], gone[2]);
 }
 
 /// After a rebuild, now and then. When to look follows from the steps alone.
@@ -318,25 +204,11 @@ void Simulation::EngineOf<Dim>::judge_overlap(double share) {
   const LimitSpec& limits = model_.limits;
   const bool is_error = share > limits.overlap_error;
   if (!is_error && (has_warned_ || share <= limits.overlap_warning)) return;
-  strip_->complete_halo();
-  WorstOverlap worst;
-  for (int l = 0; l < strip_->num_lanes(); ++l) {
-    const WorstOverlap lane = strip_->lane(l).worst_overlap();
-    if (lane.share > worst.share) worst = lane;
-  }
-  const std::string with =
-      worst.wall >= 0 ? "wall '" + model_.walls[static_cast<std::size_t>(worst.wall)].name + "'"
-                      : fmt::format("particle {}", worst.with);
-  const std::string now = from_rank_with_most(
-      worst.share,
-      fmt::format("now it is largest between particle {} at {} and {}: {:.3g} m, {:.3g} "
-                  "of the smaller radius",
-                  worst.id, in_brackets(worst.position, Dim), with, worst.overlap, worst.share));
   const std::string what = fmt::format(
       "an overlap of {:.3g} of the smaller radius is beyond limits.{} = {:.3g}; {}; stiffer "
       "contacts or a smaller time.step would help",
       share, is_error ? "overlap_error" : "overlap_warning",
-      is_error ? limits.overlap_error : limits.overlap_warning, now);
+      is_error ? limits.overlap_error : limits.overlap_warning, describe_worst_overlap());
   if (is_error) throw AgreedError(fmt::format("at step {} {}", step_, what));
   has_warned_ = true;
   if (communicator_.is_root()) note(what, true);

@@ -11,8 +11,6 @@
 #include <barchan/core/error.hpp>
 
 namespace barchan {
-namespace {}  // namespace
-
 template <int Dim>
 Strip<Dim>::Strip(World<Dim>& world, const Communicator& communicator,
                   std::unique_ptr<Exchange> exchange, int num_lanes, bool scheme_returns)

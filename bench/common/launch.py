@@ -28,9 +28,7 @@ def pinned(command, ranks, threads=1):
     if ranks == 1:
         cores = sorted(os.sched_getaffinity(0))[-threads:]
         return ["taskset", "-c", ",".join(map(str, cores)), *command]
-    if threads > 1:
-        return ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none", *command]
-    if ranks > num_cores():
+    if threads > 1 or ranks > num_cores():
         return ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none", *command]
     return ["mpirun", "-n", str(ranks), "--bind-to", "core", "--map-by", "core", *command]
 

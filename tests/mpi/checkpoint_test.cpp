@@ -17,41 +17,48 @@ namespace fs = std::filesystem;
 namespace barchan::test {
 namespace {
 
-TEST(Checkpoints, AreKeptAsManyAsAskedFor) {
-  const Scenario s = moving_walls();
-  const SharedFolder folder;
-  Simulation sim(s.model, s.set, MPI_COMM_WORLD, with_threads(1));
-  sim.keep_checkpoints(folder.path(), {20, 0.0, 2});
-  sim.run(130);
-  EXPECT_TRUE(sim.finish_checkpoints());
-  EXPECT_EQ(CheckpointFolder(folder.path()).steps(), (std::vector<std::int64_t>{120, 100}));
+/// A run of moving walls on one thread a rank that keeps checkpoints as `spec` says.
+struct KeepingRun {
+  explicit KeepingRun(const CheckpointSpec& spec)
+      : sim(scenario.model, scenario.set, MPI_COMM_WORLD, with_threads(1)) {
+    sim.keep_checkpoints(folder.path(), spec);
+  }
+  /// Ends the writing; the steps of the checkpoints that there are, newest first.
+  std::vector<std::int64_t> finish() {
+    EXPECT_TRUE(sim.finish_checkpoints());
+    return CheckpointFolder(folder.path()).steps();
+  }
 
-  EXPECT_EQ(sim.last_checkpoint(), sim.communicator().is_root() ? folder.at(120) : "");
+  SharedFolder folder;
+  Scenario scenario = moving_walls();
+  Simulation sim;
+};
+
+TEST(Checkpoints, AreKeptAsManyAsAskedFor) {
+  KeepingRun run({.every_steps = 20, .every_seconds = 0.0, .keep = 2});
+  run.sim.run(130);
+
+  EXPECT_EQ(run.finish(), (std::vector<std::int64_t>{120, 100}));
+  EXPECT_EQ(run.sim.last_checkpoint(), is_root() ? run.folder.at(120) : "");
 }
 
 TEST(Checkpoints, ComeOnRequestOnce) {
-  const Scenario s = moving_walls();
-  const SharedFolder folder;
-  Simulation sim(s.model, s.set, MPI_COMM_WORLD, with_threads(1));
-  sim.keep_checkpoints(folder.path(), {0, 0.0, 9});
-  sim.run(100);
-  if (sim.communicator().is_root()) Simulation::request_checkpoint();
-  sim.run(100);
-  EXPECT_TRUE(sim.finish_checkpoints());
-  const auto steps = CheckpointFolder(folder.path()).steps();
+  KeepingRun run({.every_steps = 0, .every_seconds = 0.0, .keep = 9});
+  run.sim.run(100);
+  if (is_root()) Simulation::request_checkpoint();
+  run.sim.run(100);
+
+  const auto steps = run.finish();
   ASSERT_EQ(steps.size(), 1U);
   EXPECT_GT(steps[0], 100);
   EXPECT_LT(steps[0], 125);
 }
 
 TEST(Checkpoints, ComeByTheClock) {
-  const Scenario s = moving_walls();
-  const SharedFolder folder;
-  Simulation sim(s.model, s.set, MPI_COMM_WORLD, with_threads(1));
-  sim.keep_checkpoints(folder.path(), {0, 1e-6, 3});
-  sim.run(200);
-  EXPECT_TRUE(sim.finish_checkpoints());
-  EXPECT_EQ(CheckpointFolder(folder.path()).steps().size(), 3U);
+  KeepingRun run({.every_steps = 0, .every_seconds = 1e-6, .keep = 3});
+  run.sim.run(200);
+
+  EXPECT_EQ(run.finish().size(), 3U);
 }
 
 TEST(Checkpoints, ThatCannotBeWrittenAreWarningsAndTheRunGoesOn) {

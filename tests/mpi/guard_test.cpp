@@ -276,24 +276,5 @@ TEST(Watch, AWallThatOutrunsTheSkinIsNoticed) {
   expect_on_all_ranks(error_of(s, with_threads(1)), {"a particle or wall had moved", "the skin"});
 }
 
-/// Every rank by itself: one that knows alone would leave the others waiting.
-TEST(Watch, AParticleThatGoesWildIsNamedInThatStep) {
-  for (const double force : {1e9, std::numeric_limits<double>::quiet_NaN()}) {
-    const Scenario s = soil_with_ring_and_plate();
-    Simulation sim(s.model, s.set, Communicator::self(), with_threads(2));
-    sim.run(100);
-    sim.apply_forces(
-        [&](const OwnedParticle& p) { return Vec3(p.id == 5 ? force : 0.0, 0.0, 0.0); });
-    try {
-      sim.run(100);
-      FAIL() << "the run went on";
-    } catch (const RunError& e) {
-      const std::string what = e.what();
-      EXPECT_NE(what.find("in step 100 particle 5 at ("), std::string::npos) << what;
-      EXPECT_NE(what.find("touching "), std::string::npos) << what;
-    }
-  }
-}
-
 }  // namespace
 }  // namespace barchan::test

@@ -5,9 +5,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +13,8 @@
 #include <gtest/gtest.h>
 
 #include <barchan/tasks/simulation.hpp>
+
+#include <support/temporary_folder.hpp>
 
 #include "scenarios.hpp"
 
@@ -48,17 +48,13 @@ class SharedFolder {
   SharedFolder() {
     std::array<char, 64> name{};
     if (is_root()) {
-      std::snprintf(name.data(), name.size(), "restart_test_XXXXXX");
-      if (mkdtemp(name.data()) == nullptr) name.fill('\0');
+      folder_.emplace(".");
+      folder_->path().copy(name.data(), name.size() - 1);
     }
     MPI_Bcast(name.data(), static_cast<int>(name.size()), MPI_CHAR, 0, MPI_COMM_WORLD);
     path_ = name.data();
   }
-  ~SharedFolder() {
-    MPI_Barrier(MPI_COMM_WORLD);
-    std::error_code ignored;
-    if (is_root()) std::filesystem::remove_all(path_, ignored);
-  }
+  ~SharedFolder() { MPI_Barrier(MPI_COMM_WORLD); }
   SharedFolder(const SharedFolder&) = delete;
   SharedFolder& operator=(const SharedFolder&) = delete;
   [[nodiscard]] const std::string& path() const { return path_; }
@@ -67,6 +63,7 @@ class SharedFolder {
   }
 
  private:
+  std::optional<TemporaryFolder> folder_;  ///< of the root
   std::string path_;
 };
 

@@ -28,6 +28,15 @@ def rank_of(pid):
     return int(words.get(b"OMPI_COMM_WORLD_RANK", b"-1"))
 
 
+def name_of(pid):
+    """What a process runs: that of a rank is still its launcher's until it has begun. Empty: it has ended."""
+    try:
+        with open(f"/proc/{pid}/comm", encoding="utf-8", errors="replace") as file:
+            return file.read().strip()
+    except OSError:
+        return ""
+
+
 def is_there(pid):
     """Whether a process lives: it may have ended without having been waited for."""
     try:

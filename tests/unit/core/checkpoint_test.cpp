@@ -5,12 +5,10 @@
 #include <cerrno>
 #include <cmath>
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <random>
-#include <stdexcept>
 
 #include <gtest/gtest.h>
 
@@ -19,25 +17,16 @@
 #include <barchan/core/checkpoint/state.hpp>
 #include <barchan/core/exact_sum.hpp>
 
+#include <support/temporary_folder.hpp>
+
 namespace fs = std::filesystem;
 
 namespace barchan {
 namespace {
 
-class Folder {
- public:
-  Folder() {  // in memory where that can be had: the tests write thousands of files
-    path_ = fs::is_directory("/dev/shm") ? "/dev/shm/" : "./";
-    path_ += "checkpoint_test_XXXXXX";
-    if (mkdtemp(path_.data()) == nullptr) throw std::runtime_error("no temporary folder");
-  }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  [[nodiscard]] const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
+/// In memory where that can be had: the tests write thousands of files.
+struct Folder : test::TemporaryFolder {
+  Folder() : TemporaryFolder(test::fast_parent()) {}
 };
 
 constexpr ShareLimits kLimits{2, 3, 2, 1};

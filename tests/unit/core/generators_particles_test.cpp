@@ -1,16 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <functional>
 #include <limits>
-
-#include <unistd.h>
 
 #include <barchan/core/error.hpp>
 #include <barchan/core/generators/make_particles.hpp>
 #include <barchan/core/io/particle_file.hpp>
 #include <barchan/core/io/text_file.hpp>
+
+#include <support/temporary_folder.hpp>
 
 namespace barchan {
 namespace {
@@ -57,8 +56,6 @@ std::string message_of(const std::function<void()>& act) {
 
 class ParticlesFromFile : public ::testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove(path_); }
-
   ParticleSource source(const std::string& rows) {
     OutputFile file(path_);
     file.write("id,type,radius,density,x,y,z,vx\n" + rows);
@@ -68,9 +65,8 @@ class ParticlesFromFile : public ::testing::Test {
     return source;
   }
 
-  std::string path_ = (std::filesystem::temp_directory_path() /
-                       ("barchan_gen_" + std::to_string(::getpid()) + ".csv"))
-                          .string();
+  test::TemporaryFolder folder_;
+  std::string path_ = folder_.at("grains.csv");
 };
 
 using Arrangement = LatticeSource::Arrangement;

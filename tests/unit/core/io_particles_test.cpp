@@ -5,11 +5,11 @@
 #include <functional>
 #include <random>
 
-#include <unistd.h>
-
 #include <barchan/core/error.hpp>
 #include <barchan/core/io/particle_file.hpp>
 #include <barchan/core/io/text_file.hpp>
+
+#include <support/temporary_folder.hpp>
 
 namespace barchan {
 namespace {
@@ -17,9 +17,8 @@ namespace {
 constexpr const char* kHeader = "id,type,radius,density,x,y,z,vx,vy,vz,omegax,omegay,omegaz\n";
 
 std::string temporary(const std::string& name) {
-  return (std::filesystem::temp_directory_path() /
-          ("barchan_io_" + std::to_string(::getpid()) + "_" + name))
-      .string();
+  static const test::TemporaryFolder folder;
+  return folder.at(name);
 }
 
 /// The error of reading `text` as CSV; fails the test when there is none.
@@ -145,8 +144,6 @@ TEST(ParticleFiles, ComeBackBitForBit) {
     expect_same(from_csv.particles[i], particles[i]);
     expect_same(from_vtp.particles[i], particles[i]);
   }
-  std::filesystem::remove(csv);
-  std::filesystem::remove(vtp);
 }
 
 TEST(ParticleFiles, ReadAMillionRowsInAFewSeconds) {
@@ -168,7 +165,6 @@ TEST(ParticleFiles, ReadAMillionRowsInAFewSeconds) {
   expect_same(file.particles.back(), particles.back());
   RecordProperty("seconds", std::to_string(seconds));
   EXPECT_LT(seconds, 20.0);  // 0.5 s on an idle core; sanitizers and busy machines take longer
-  std::filesystem::remove(path);
 }
 
 constexpr const char* kData =
@@ -215,7 +211,6 @@ TEST(ParticlesLammps, ComesBackFromItsOwnFile) {
   ASSERT_EQ(file.particles.size(), particles.size());
   for (std::size_t i = 0; i < particles.size(); ++i) expect_same(file.particles[i], particles[i]);
   EXPECT_EQ(file.box->hi, Vec3(2, 2, 2));
-  std::filesystem::remove(path);
 }
 
 TEST(ParticlesLammps, RefusesWhatItDoesNotUnderstand) {

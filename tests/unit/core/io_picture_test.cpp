@@ -1,15 +1,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <filesystem>
 #include <limits>
 
 #include <png.h>
-#include <unistd.h>
 
 #include <barchan/core/error.hpp>
 #include <barchan/core/io/canvas.hpp>
 #include <barchan/core/io/picture.hpp>
+
+#include <support/temporary_folder.hpp>
 
 namespace barchan {
 namespace {
@@ -47,8 +47,6 @@ Image read_png(const std::string& path) {
 
 class Picture : public ::testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove(path_); }
-
   Image draw(PictureInput input) {
     input.positions = positions_;
     input.radii = radii_;
@@ -58,9 +56,8 @@ class Picture : public ::testing::Test {
 
   std::vector<Vec3> positions_;
   std::vector<double> radii_;
-  std::string path_ =
-      (std::filesystem::temp_directory_path() / ("barchan_" + std::to_string(::getpid()) + ".png"))
-          .string();
+  test::TemporaryFolder folder_;
+  std::string path_ = folder_.at("picture.png");
 };
 
 TEST_F(Picture, DrawsADiskOfTheRightArea) {

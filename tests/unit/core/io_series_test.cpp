@@ -2,22 +2,19 @@
 
 #include <filesystem>
 
-#include <unistd.h>
-
 #include <barchan/core/error.hpp>
 #include <barchan/core/io/series.hpp>
 #include <barchan/core/io/text_file.hpp>
+
+#include <support/temporary_folder.hpp>
 
 namespace barchan {
 namespace {
 
 class Series : public ::testing::Test {
  protected:
-  void TearDown() override { std::filesystem::remove(path_); }
-
-  std::string path_ = (std::filesystem::temp_directory_path() /
-                       ("barchan_series_" + std::to_string(::getpid()) + ".csv"))
-                          .string();
+  test::TemporaryFolder folder_;
+  std::string path_ = folder_.at("series.csv");
   std::vector<std::string> columns_{"plate_y"};
 };
 

@@ -3,21 +3,20 @@
 #include <filesystem>
 #include <random>
 
-#include <unistd.h>
-
 #include <barchan/core/error.hpp>
 #include <barchan/core/io/base64.hpp>
 #include <barchan/core/io/text_file.hpp>
 #include <barchan/core/io/vtp.hpp>
 #include <barchan/core/io/xml.hpp>
 
+#include <support/temporary_folder.hpp>
+
 namespace barchan {
 namespace {
 
 std::string temporary(const std::string& name) {
-  return (std::filesystem::temp_directory_path() /
-          ("barchan_vtp_" + std::to_string(::getpid()) + "_" + name))
-      .string();
+  static const test::TemporaryFolder folder;
+  return folder.at(name);
 }
 
 /// Three particles and the arrays that refer to them.
@@ -88,7 +87,6 @@ TEST(Vtp, ComesBackBitForBit) {
   EXPECT_EQ(std::get<std::vector<double>>(piece.find("a<b>&\"c\"")->values), snapshot.radii);
   EXPECT_EQ(piece.find("velocity")->components, 3);
   EXPECT_EQ(piece.find("nothing"), nullptr);
-  std::filesystem::remove(path);
 }
 
 TEST(Vtp, IsWellFormedWithOneVertexPerPoint) {
@@ -98,14 +96,12 @@ TEST(Vtp, IsWellFormedWithOneVertexPerPoint) {
   EXPECT_EQ(count_tags(path, "DataArray"), 2 + 4 + 1 + 2);
   EXPECT_NE(read_text_file(path).find("NumberOfPoints=\"3\" NumberOfVerts=\"3\""),
             std::string::npos);
-  std::filesystem::remove(path);
 }
 
 TEST(Vtp, MayBeEmpty) {
   const std::string path = temporary("empty.vtp");
   write_vtp(path, VtpArrays{});
   EXPECT_TRUE(read_vtp(path).points.empty());
-  std::filesystem::remove(path);
 }
 
 TEST(Vtp, RefusesFieldsOfAnotherLength) {
@@ -131,15 +127,12 @@ TEST(Vtp, NamesPiecesAndTimes) {
   ASSERT_EQ(entries.size(), 2u);
   EXPECT_EQ(entries[1].time, 0.1);
   EXPECT_EQ(entries[1].file, "b&c.pvtp");
-  std::filesystem::remove(pvtp);
-  std::filesystem::remove(pvd);
 }
 
 TEST(Vtp, SurvivesDamagedTexts) {
   const std::string path = temporary("damage.vtp");
   write_vtp(path, Snapshot().arrays());
   const std::string whole = read_text_file(path);
-  std::filesystem::remove(path);
   std::mt19937_64 random(7);
   int num_refused = 0;
   for (int round = 0; round < 4000; ++round) {

@@ -2,12 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 
 #include <barchan/core/error.hpp>
+
+#include <support/temporary_folder.hpp>
 
 namespace fs = std::filesystem;
 
@@ -16,12 +16,6 @@ namespace {
 
 class RunFolderTest : public testing::Test {
  protected:
-  RunFolderTest() {
-    root_ = (fs::temp_directory_path() / "barchan_run_folder_XXXXXX").string();
-    if (mkdtemp(root_.data()) == nullptr) throw std::runtime_error("no temporary folder");
-  }
-  ~RunFolderTest() override { fs::remove_all(root_); }
-
   void touch(const std::string& name) const {
     fs::create_directories(fs::path(root_ + "/" + name).parent_path());
     std::ofstream(root_ + "/" + name) << "x\n";
@@ -30,7 +24,8 @@ class RunFolderTest : public testing::Test {
     return fs::exists(root_ + "/" + name);
   }
 
-  std::string root_;
+  test::TemporaryFolder folder_;
+  const std::string& root_ = folder_.path();
 };
 
 TEST_F(RunFolderTest, IsNamedAfterTheDeck) {

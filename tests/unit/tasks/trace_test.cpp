@@ -2,16 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
 #include <fstream>
 #include <set>
-
-#include <unistd.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <support/mpi_session.hpp>
+#include <support/temporary_folder.hpp>
 
 namespace barchan {
 namespace {
@@ -19,7 +17,6 @@ namespace {
 class TraceFile : public testing::Test {
  protected:
   TraceFile() : communicator_(test::world()) {}
-  ~TraceFile() override { std::filesystem::remove(path_); }
 
   nlohmann::json written(const Trace& trace) {
     trace.write(path_);
@@ -27,8 +24,8 @@ class TraceFile : public testing::Test {
   }
 
   Communicator communicator_;
-  // Tests run side by side, each in its own process.
-  std::string path_ = fmt::format("{}barchan_trace_{}.json", testing::TempDir(), getpid());
+  test::TemporaryFolder folder_;
+  std::string path_ = folder_.at("trace.json");
 };
 
 TEST_F(TraceFile, HoldsSlicesWithNameStepAndDuration) {

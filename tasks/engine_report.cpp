@@ -1,0 +1,177 @@
+#include <algorithm>
+#include <cstring>
+#include <limits>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <barchan/core/error.hpp>
+#include <barchan/tasks/engine.hpp>
+
+// What a run says that goes wrong or must let particles go: with id, position, velocity and
+// partners. Who notices: engine_watch.cpp.
+
+namespace barchan {
+namespace {
+
+constexpr std::size_t kMostPartners = 6;  // that a message names
+
+std::string in_brackets(const double* v, int count) {
+  return fmt::format("({:.6g})", fmt::join(v, v + count, ", "));
+}
+
+std::string plural(std::int64_t count, const char* word) {
+  return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+template <int Dim>
+void Simulation::EngineOf<Dim>::note(std::string text, bool is_warning) {
+  notes_.push_back({fmt::format("step {}: {}", step_, text), is_warning});
+}
+
+/// The text of the rank with the largest number; of equal ones, the lowest rank.
+template <int Dim>
+std::string Simulation::EngineOf<Dim>::from_rank_with_most(double mine, const std::string& text) {
+  const auto numbers = communicator_.gather(std::as_bytes(std::span(&mine, 1)));
+  const auto texts = communicator_.gather(text);
+  std::string chosen = text;
+  double most = -std::numeric_limits<double>::infinity();
+  for (std::size_t r = 0; r < numbers.size(); ++r) {
+    double number = 0.0;
+    std::memcpy(&number, numbers[r].data(), sizeof number);
+    if (number <= most) continue;
+    most = number;
+    chosen = texts[r];
+  }
+  return communicator_.bcast(chosen);
+}
+
+template <int Dim>
+std::string Simulation::EngineOf<Dim>::describe(const Suspect& s,
+                                                const typename Lane<Dim>::Partners& touched) const {
+  const std::string text = fmt::format("particle {} at {} with velocity {}", s.id,
+                                       in_brackets(s.position, Dim), in_brackets(s.velocity, Dim));
+  std::vector<std::string> names;
+  for (const std::int64_t id : touched.ids) names.push_back(fmt::format("particle {}", id));
+  for (const std::int32_t w : touched.walls)
+    names.push_back("wall '" + model_.walls[static_cast<std::size_t>(w)].name + "'");
+  if (names.empty()) return text + ", touching nothing";
+  const std::size_t more = names.size() - std::min(names.size(), kMostPartners);
+  names.resize(names.size() - more);
+  return fmt::format("{}, touching {}{}", text, fmt::join(names, ", "),
+                     more == 0 ? "" : fmt::format(" and {} more", more));
+}
+
+/// Every rank looks among its own particles, so that where the cuts are is not in the text.
+template <int Dim>
+typename Lane<Dim>::Partners Simulation::EngineOf<Dim>::partners_of(const Suspect& s) {
+  std::vector<std::int64_t> mine;
+  for (int l = 0; l < strip_->num_lanes(); ++l) strip_->lane(l).find_touching(s, mine);
+  typename Lane<Dim>::Partners found;
+  for (const auto& piece : communicator_.gather(std::as_bytes(std::span(mine)))) {
+    const std::size_t known = found.ids.size();
+    found.ids.resize(known + piece.size() / sizeof(std::int64_t));
+    if (!piece.empty()) std::memcpy(found.ids.data() + known, piece.data(), piece.size());
+  }
+  std::sort(found.ids.begin(), found.ids.end());
+  double to_wall[3] = {};
+  for (std::size_t w = 0; w < world_.walls.size(); ++w) {
+    if (world_.walls[w].is_active &&
+        WallContacts<Dim>::nearest(world_.wall_specs[w], world_.walls[w], s.position, to_wall) <
+            s.radius)
+      found.walls.push_back(static_cast<std::int32_t>(w));
+  }
+  return found;
+}
+
+template <int Dim>
+std::string Simulation::EngineOf<Dim>::describe_fastest() {
+  Suspect fastest;
+  for (int l = 0; l < strip_->num_lanes(); ++l) {
+    const std::int32_t row = strip_->lane(l).fastest_row();
+    if (row < 0) continue;
+    const Suspect s = strip_->lane(l).suspect(row);
+    if (s.speed2 > fastest.speed2) fastest = s;
+  }
+  const std::string bytes = from_rank_with_most(
+      fastest.speed2, {reinterpret_cast<const char*>(&fastest), sizeof fastest});
+  std::memcpy(&fastest, bytes.data(), sizeof fastest);
+  if (fastest.id == 0) return "no particle is left";
+  return "the fastest is " + communicator_.bcast(describe(fastest, partners_of(fastest)));
+}
+
+template <int Dim>
+std::string Simulation::EngineOf<Dim>::describe_worst_overlap() {
+  strip_->complete_halo();
+  WorstOverlap worst;
+  for (int l = 0; l < strip_->num_lanes(); ++l) {
+    const WorstOverlap lane = strip_->lane(l).worst_overlap();
+    if (lane.share > worst.share) worst = lane;
+  }
+  const std::string with =
+      worst.wall >= 0 ? "wall '" + model_.walls[static_cast<std::size_t>(worst.wall)].name + "'"
+                      : fmt::format("particle {}", worst.with);
+  return from_rank_with_most(
+      worst.share,
+      fmt::format("now it is largest between particle {} at {} and {}: {:.3g} m, {:.3g} "
+                  "of the smaller radius",
+                  worst.id, in_brackets(worst.position, Dim), with, worst.overlap, worst.share));
+}
+
+template <int Dim>
+void Simulation::EngineOf<Dim>::report_outrun(const CheckNumbers& answer) {
+  throw AgreedError(fmt::format(
+      "at step {} a particle or wall had moved {:.3g} m since the lists were built, more than half "
+      "the skin of {:.3g} m (largest speed {:.3g} m/s): contacts may have been missed; {}; give a "
+      "larger search.skin or a smaller time.step",
+      step_, answer.distance, world_.skin, answer.speed, describe_fastest()));
+}
+
+/// This rank alone knows: the others may be in the midst of the next step.
+template <int Dim>
+void Simulation::EngineOf<Dim>::report_fast(int l) {
+  const Lane<Dim>& lane = strip_->lane(l);
+  const std::int32_t row = lane.first_fast_row();
+  const Suspect s = lane.suspect(row);
+  const double* was =
+      lane.store().reference.data() + std::size_t{Dim} * static_cast<std::size_t>(row);
+  throw StepError(
+      step_,
+      fmt::format("in step {} {} (at {} when lists were last built): {}; a smaller time.step, more "
+                  "damping or less overlap at the start would help",
+                  step_, describe(s, lane.partners_before_step(row)), in_brackets(was, Dim),
+                  s.speed2 < std::numeric_limits<double>::max()
+                      ? fmt::format("it moves farther in one step than half the skin of {:.3g} m, "
+                                    "so that contacts may be missed",
+                                    world_.skin)
+                      : "its state is no longer finite"));
+}
+
+template <int Dim>
+void Simulation::EngineOf<Dim>::report_departures(const std::vector<Departure>& left) {
+  const Departure& first = left.front();
+  throw AgreedError(
+      fmt::format("at step {} particle {} is out of the domain, at {} with velocity {}{}: enlarge "
+                  "domain.lo and domain.hi, put a wall there, or let particles go by "
+                  "domain.outside = \"delete\"",
+                  step_, first.id, in_brackets(first.position, Dim),
+                  in_brackets(first.velocity, Dim),
+                  left.size() == 1 ? "" : fmt::format(", and {} more are", left.size() - 1)),
+      true);
+}
+
+template <int Dim>
+void Simulation::EngineOf<Dim>::note_departures(const std::vector<Departure>& left,
+                                                std::int64_t contacts, std::int64_t bonds) {
+  note(fmt::format("{} left the domain, the first is particle {} at {}; {} and {} went with it",
+                   plural(static_cast<std::int64_t>(left.size()), "particle"), left.front().id,
+                   in_brackets(left.front().position, Dim), plural(contacts, "contact"),
+                   plural(bonds, "bond")));
+}
+
+template class Simulation::EngineOf<2>;
+template class Simulation::EngineOf<3>;
+
+}  // namespace barchan

@@ -1,0 +1,78 @@
+// Who is named when a run goes wrong: the same particle, in the same words, wherever the cuts are.
+#include <gtest/gtest.h>
+#include <mpi.h>
+
+#include <limits>
+#include <string>
+
+#include <fmt/format.h>
+
+#include <barchan/core/error.hpp>
+
+#include "running.hpp"
+#include "scenarios.hpp"
+
+namespace barchan::test {
+namespace {
+
+/// What a run says in which one particle is pushed in one step. @return empty: it went on
+template <class Error>
+std::string error_after_push(const Scenario& s, MPI_Comm comm, const RunOptions& options,
+                             std::int64_t id, double force) {
+  Simulation sim(s.model, s.set, comm, options);
+  sim.run(100);
+  sim.apply_forces(
+      [&](const OwnedParticle& p) { return Vec3(p.id == id ? force : 0.0, 0.0, 0.0); });
+  try {
+    sim.run(1);
+    sim.clear_forces();
+    sim.run(100);
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return {};
+}
+
+/// The text of rank 0, on every rank.
+std::string from_root(const std::string& text) {
+  return Communicator::world().bcast(text);
+}
+
+TEST(Culprit, OneThatOutranTheSkinIsNamedAlikeOnAnyNumberOfRanksAndThreads) {
+  const Scenario s = soil_with_ring_and_plate();
+  int told = 0, way = 0;
+  for (std::int64_t id = 1; id <= 161; id += 20) {
+    const auto error = [&](MPI_Comm comm, const RunOptions& options) {
+      return error_after_push<AgreedError>(s, comm, options, id, 6e4);
+    };
+    const std::string expected = from_root(is_root() ? error(MPI_COMM_SELF, with_threads(1)) : "");
+    const auto exchange = exchange_names()[static_cast<std::size_t>(way) % exchange_names().size()];
+    const int threads = ++way % 3 + 1;
+
+    const std::string got = error(MPI_COMM_WORLD, with_threads(threads, exchange));
+
+    EXPECT_EQ(got, expected) << num_ranks() << " ranks of " << threads << " threads, " << exchange;
+    if (got.find("touching particle ") != std::string::npos) ++told;
+  }
+  EXPECT_GT(told, 0);
+}
+
+/// Every rank by itself: one that knows alone would leave the others waiting.
+TEST(Culprit, OneThatGoesWildIsNamedInThatStepAlikeOnAnyNumberOfThreads) {
+  const Scenario s = soil_with_ring_and_plate();
+  for (const double force : {1e9, std::numeric_limits<double>::quiet_NaN()}) {
+    for (const std::int64_t id : {5, 50, 100, 150}) {
+      const auto error = [&](int threads) {
+        return error_after_push<StepError>(s, MPI_COMM_SELF, with_threads(threads), id, force);
+      };
+      const std::string expected = error(1);
+      EXPECT_NE(expected.find(fmt::format("in step 100 particle {} at (", id)), std::string::npos)
+          << expected;
+      EXPECT_NE(expected.find("touching "), std::string::npos) << expected;
+      for (const int threads : {2, 3, 4}) EXPECT_EQ(error(threads), expected);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace barchan::test
