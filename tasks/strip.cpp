@@ -129,6 +129,7 @@ void Strip<Dim>::send_band(int l, Side side) {
 template <int Dim>
 void Strip<Dim>::end_step() {
   parity_ = 1 - parity_;
+  halo_step_ = step + 1;
   fresh_ = false;
   for (const Side side : kSides) awaited_[index_of(side)] = neighbours_.has(side);
 }
@@ -136,6 +137,7 @@ void Strip<Dim>::end_step() {
 template <int Dim>
 void Strip<Dim>::wait_halo(Side side) {
   wait_until([&] { return exchange_->poll(side); }, [&] { return name_of_halo(side); });
+  if (trace_ != nullptr) trace_->noticed(side, halo_step_, now_ns());
 }
 
 template <int Dim>

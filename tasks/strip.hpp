@@ -172,6 +172,7 @@ class Strip {
   std::array<bool, 2> awaited_{};       ///< a message of another rank is due in this step
   bool fresh_ = true;                   ///< ghosts are up to date: nothing to unpack in this step
   int parity_ = 0;
+  std::int64_t halo_step_ = 0;  ///< that the halo on its way is for
   std::int64_t send_ns_ = 0;
   RebuildWaits waits_;
   std::int64_t bulk_begin_ = 0;
