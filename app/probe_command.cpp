@@ -84,15 +84,25 @@ void print_json(const ProbeReport& r, int ranks) {
   std::fflush(stdout);
 }
 
+/// What does not work among all is a line of the answer; what was asked for by name is a refusal.
+void require_asked(const ProbeReport& r, const ProbeOptions& options) {
+  if (r.obstacles.empty() || (options.exchanges.empty() && !r.rows.empty())) return;
+  const ProbeObstacle& first = r.obstacles.front();
+  throw InputError(fmt::format("exchange '{}' cannot be measured here", first.exchange),
+                   first.reason);
+}
+
 }  // namespace
 
 void probe(const Communicator& world, const ProbeArguments& arguments) {
   const ProbeReport report = probe_exchanges(world, arguments.options);
-  if (!world.is_root()) return;
-  if (arguments.json)
-    print_json(report, world.size());
-  else
-    print_table(report, world.size());
+  if (world.is_root()) {
+    if (arguments.json)
+      print_json(report, world.size());
+    else
+      print_table(report, world.size());
+  }
+  require_asked(report, arguments.options);
 }
 
 }  // namespace barchan::app

@@ -26,8 +26,10 @@ class DelayedExchange final : public Exchange {
   void release(Side side) override;
   void begin_bulk(std::span<const std::byte> to_left, std::span<const std::byte> to_right) override;
   void progress() override { inner_->progress(); }
+  bool needs_progress() const override { return inner_->needs_progress(); }
   bool poll_bulk() override;
   std::vector<std::byte>& bulk(Side side) override { return inner_->bulk(side); }
+  std::int64_t bulk_posted(Side side) const override { return inner_->bulk_posted(side); }
   ExchangeStats stats() const override { return inner_->stats(); }
   HaloTimes halo_times(Side side) const override { return inner_->halo_times(side); }
   bool is_blocking() const override { return inner_->is_blocking(); }

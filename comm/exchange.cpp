@@ -1,7 +1,9 @@
 #include <barchan/comm/exchange.hpp>
 
+#include <algorithm>
 #include <array>
 #include <utility>
+#include <vector>
 
 #include <barchan/comm/delayed_exchange.hpp>
 #include <barchan/comm/exchanges/all.hpp>
@@ -81,16 +83,24 @@ void check_exchange_name(std::string_view name) {
 }
 
 std::string exchanges_here(const Communicator& communicator, Neighbours neighbours) {
-  std::string working, others;
+  std::string working;
+  std::vector<std::pair<std::string, std::string>> others;  // reason, names
   for (const Entry& entry : entries) {
     try {
       (void)make_plain(entry.name, communicator, neighbours, {});
       working += (working.empty() ? "" : ", ") + std::string(entry.name);
     } catch (const InputError& e) {
-      others += "\n  not here: " + std::string(entry.name) + ": " + e.what();
+      const auto same =
+          std::ranges::find_if(others, [&e](const auto& other) { return other.first == e.what(); });
+      if (same == others.end())
+        others.emplace_back(e.what(), entry.name);
+      else
+        same->second += ", " + std::string(entry.name);
     }
   }
-  return working + "; or two of them as A+B, A within a node and B between nodes" + others;
+  std::string text = working + "; or two of them as A+B, A within a node and B between nodes";
+  for (const auto& [reason, names] : others) text += "\n  not here: " + names + ": " + reason;
+  return text;
 }
 
 std::vector<std::string> exchange_names() {

@@ -97,11 +97,17 @@ class Exchange {
   /// that has all it needs and still owes others theirs. Never blocks.
   virtual void progress() {}
 
+  /// Whether somebody may need progress(): false where messages move without help.
+  [[nodiscard]] virtual bool needs_progress() const { return true; }
+
   /// True when both sides are complete, in and out.
   [[nodiscard]] virtual bool poll_bulk() = 0;
 
   /// What came from `side`; the caller may take it away. @pre poll_bulk()
   [[nodiscard]] virtual std::vector<std::byte>& bulk(Side side) = 0;
+
+  /// When the neighbour sent the last part of the bulk that is in, by its clock (see HaloTimes).
+  [[nodiscard]] virtual std::int64_t bulk_posted(Side side) const = 0;
 
   [[nodiscard]] virtual ExchangeStats stats() const = 0;
   [[nodiscard]] virtual HaloTimes halo_times(Side side) const = 0;

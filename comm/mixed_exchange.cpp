@@ -100,6 +100,11 @@ void MixedExchange::progress() {
   }
 }
 
+bool MixedExchange::needs_progress() const {
+  return std::ranges::any_of(parts_,
+                             [](const auto& part) { return part && part->needs_progress(); });
+}
+
 bool MixedExchange::poll_bulk() {
   bool all = true;
   for (const auto& part : parts_) {

@@ -44,8 +44,10 @@ class MixedExchange final : public Exchange {
   void release(Side side) override { of(side).release(side); }
   void begin_bulk(std::span<const std::byte> to_left, std::span<const std::byte> to_right) override;
   void progress() override;
+  bool needs_progress() const override;
   bool poll_bulk() override;
   std::vector<std::byte>& bulk(Side side) override { return of(side).bulk(side); }
+  std::int64_t bulk_posted(Side side) const override { return of(side).bulk_posted(side); }
   ExchangeStats stats() const override;
   HaloTimes halo_times(Side side) const override { return of(side).halo_times(side); }
   bool is_blocking() const override;

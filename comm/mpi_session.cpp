@@ -11,8 +11,8 @@ namespace barchan {
 namespace {
 
 /// MPICH before 4.2 over UCX: a rank that has taken its leave waits in MPI_Finalize without moving
-/// messages, so one that is slower by then waits for ever (pmodels/mpich #6596). One start in ten
-/// hung between hosts; when all begin at once after a pause in which nobody is in MPI, one in 160.
+/// messages, so one that is slower by then waits for ever (pmodels/mpich #6596). Seldom where all
+/// begin at once after a pause in which nobody is in MPI.
 void leave_together() {
 #if defined(MPICH_NUMVERSION) && MPICH_NUMVERSION < 40200000
   constexpr std::chrono::milliseconds pause{20};

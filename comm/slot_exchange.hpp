@@ -47,6 +47,7 @@ class SlotExchange : public Exchange {
   void progress() override;
   bool poll_bulk() final;
   std::vector<std::byte>& bulk(Side side) final { return bulk_sides_[index_of(side)].in; }
+  std::int64_t bulk_posted(Side side) const final { return track(Lane::Bulk, side).header.posted; }
   ExchangeStats stats() const final;
   HaloTimes halo_times(Side side) const final { return halo_times_[index_of(side)]; }
 

@@ -140,8 +140,8 @@ Timings Simulation::EngineOf<Dim>::timings() const {
   for (const auto& [name, seconds] : t.phases) rest -= seconds;
   t.phases["other"] = std::max(0.0, rest);
   if (strip_->exchange() != nullptr) t.exchange = strip_->exchange()->stats();
-  t.communication = {{"halo", {steps.in_flight, steps.exposed()}},
-                     {"rebuild", {waits.in_flight + waits.halo, waits.sum()}},
+  t.communication = {{"halo", {steps.in_flight, steps.exposed(), steps.late}},
+                     {"rebuild", {waits.in_flight + waits.halo, waits.sum(), waits.late}},
                      {"reductions", {reductions, reductions}}};
   for (const auto& [name, kind] : t.communication) {
     t.in_flight_seconds += std::max(kind.in_flight, kind.exposed);

@@ -31,6 +31,8 @@ struct CommunicationTime {
   double in_flight = 0.0;  ///< under way
   double exposed = 0.0;    ///< of that, not spent on particles: waiting, or inside the exchange; a
                            ///< worker's, averaged
+  double late = 0.0;       ///< of exposed: waits while the neighbour had not sent yet; known where
+                           ///< both share a node, and so a clock
 };
 
 /// Where the time of a run went, this rank; what workers do side by side is averaged over them.

@@ -30,6 +30,7 @@ struct StepTimes {
   double send = 0.0;       ///< inside the exchange, sending: where that waits, this is waiting
   double poll = 0.0;       ///< inside the exchange, asking for messages between chunks
   double wait = 0.0;       ///< idle for want of a halo
+  double late = 0.0;       ///< of wait: until a neighbour on this node had sent
   double in_flight = 0.0;  ///< from sending the halo until the neighbours' halo was noticed
 
   /// What the step would not have taken without communication.
@@ -83,7 +84,7 @@ class StepGraph {
   void build();
   void run_chunk(int lane, int chunk);
   void run_band(int lane, Side side);
-  void try_poll();
+  void try_poll(std::int64_t begin);
   bool poll_sides();
   void drive();
   [[nodiscard]] bool may_poll(Side side) const;
@@ -113,8 +114,10 @@ class StepGraph {
   std::int64_t num_steps_ = 0;
   // In nanoseconds. Under comm_mutex_: send, poll, flights; wait is written by one task at a time.
   std::int64_t send_ns_ = 0, poll_ns_ = 0, wait_ns_ = 0, flight_ns_ = 0;
+  std::int64_t late_ns_ = 0;
   std::atomic<std::int64_t> busy_ns_{0};  ///< in bands; a wait counts those idle only
   std::int64_t drain_begin_ = 0;
+  std::int64_t posted_at_ = 0;  ///< the last that came while the drain waited, by its sender
   std::int64_t sent_at_ = 0,
                next_sent_at_ = 0;  ///< first send of this step's halo, of the next one's
   std::int64_t exposed_before_ = 0, flight_before_ = 0;

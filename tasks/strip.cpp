@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <barchan/comm/clock.hpp>
+#include <barchan/comm/links.hpp>
 #include <barchan/comm/watchdog.hpp>
 #include <barchan/core/error.hpp>
 
@@ -23,6 +24,13 @@ Strip<Dim>::Strip(World<Dim>& world, const Communicator& communicator,
       posts_(static_cast<std::size_t>(num_lanes)) {
   for (int l = 0; l < num_lanes; ++l) lanes_.push_back(std::make_unique<Lane<Dim>>(world));
   place_bands();
+  if (!exchange_) return;
+  const auto nodes = nodes_of_ranks(communicator);
+  const std::int64_t mine = nodes[static_cast<std::size_t>(communicator.rank())];
+  for (const Side side : kSides) {
+    shares_clock_[index_of(side)] =
+        neighbours_.has(side) && nodes[static_cast<std::size_t>(neighbours_.rank(side))] == mine;
+  }
 }
 
 template <int Dim>
@@ -121,6 +129,7 @@ void Strip<Dim>::send_band(int l, Side side) {
 template <int Dim>
 void Strip<Dim>::end_step() {
   parity_ = 1 - parity_;
+  halo_step_ = step + 1;
   fresh_ = false;
   for (const Side side : kSides) awaited_[index_of(side)] = neighbours_.has(side);
 }
@@ -128,6 +137,7 @@ void Strip<Dim>::end_step() {
 template <int Dim>
 void Strip<Dim>::wait_halo(Side side) {
   wait_until([&] { return exchange_->poll(side); }, [&] { return name_of_halo(side); });
+  if (trace_ != nullptr) trace_->noticed(side, halo_step_, now_ns());
 }
 
 template <int Dim>

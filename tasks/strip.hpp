@@ -24,6 +24,7 @@ struct RebuildWaits {
   double migration = 0.0;  ///< for migrants, and for counts when strips are cut anew
   double ghosts = 0.0;     ///< for ghosts, and for the size of halos to come
   double in_flight = 0.0;  ///< migrants and ghosts, from the send until they were in
+  double late = 0.0;       ///< of all: until a neighbour on this node had sent
   [[nodiscard]] double sum() const { return halo + migration + ghosts; }
 };
 
@@ -77,6 +78,10 @@ class Strip {
   /// Whether this band must wait for a message of another rank in this step.
   [[nodiscard]] bool awaits(Side side) const { return awaited_[index_of(side)]; }
   [[nodiscard]] bool poll(Side side) { return exchange_->poll(side); }
+  /// When the neighbour sent the message that is in [ns]; 0: not known, its clock is another one.
+  [[nodiscard]] std::int64_t posted_at(Side side) const {
+    return shares_clock_[index_of(side)] ? exchange_->halo_times(side).posted : 0;
+  }
   /// Ghosts in, pairs, rows: everything that a band needs, once its message is there.
   void finish_band(int l, Side side);
   /// Publishes the finished band for the next step. @pre finish_band
@@ -147,7 +152,9 @@ class Strip {
   [[nodiscard]] int total_lanes() const { return communicator_.size() * num_lanes(); }
   template <class Pack>
   void send_halo(Side side, std::size_t bytes, Pack&& pack);
-  void count_wait(double& seconds, Trace::Slice name, std::int64_t begin);
+  /// Since `begin`, for what a neighbour sent at `posted`; 0: not known
+  void count_wait(double& seconds, Trace::Slice name, std::int64_t begin, std::int64_t posted);
+  [[nodiscard]] std::int64_t bulk_posted_at() const;
   void begin_sizes();
   void reserve_posts();
 
@@ -161,9 +168,11 @@ class Strip {
   std::vector<Post> posts_;
   std::vector<double> results_;  ///< of the published scheme, going or come
   std::vector<int> cuts_;
-  std::array<bool, 2> awaited_{};  ///< a message of another rank is due in this step
-  bool fresh_ = true;              ///< ghosts are up to date: nothing to unpack in this step
+  std::array<bool, 2> shares_clock_{};  ///< with the neighbour, on whose node this rank is
+  std::array<bool, 2> awaited_{};       ///< a message of another rank is due in this step
+  bool fresh_ = true;                   ///< ghosts are up to date: nothing to unpack in this step
   int parity_ = 0;
+  std::int64_t halo_step_ = 0;  ///< that the halo on its way is for
   std::int64_t send_ns_ = 0;
   RebuildWaits waits_;
   std::int64_t bulk_begin_ = 0;

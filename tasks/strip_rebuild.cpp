@@ -32,20 +32,34 @@ void Strip<Dim>::rebuild(const ForEachLane& parallel) {
 template <int Dim>
 void Strip<Dim>::discard_pending() {
   const std::int64_t begin = now_ns();
+  std::int64_t posted = 0;
   for (const Side side : kSides) {
     if (!awaits(side) || (returns_ && side == Side::Right)) continue;
     wait_halo(side);
+    posted = std::max(posted, posted_at(side));
     exchange_->release(side);
   }
   awaited_ = {};
-  count_wait(waits_.halo, Trace::Slice::Wait, begin);
+  count_wait(waits_.halo, Trace::Slice::Wait, begin, posted);
 }
 
 template <int Dim>
-void Strip<Dim>::count_wait(double& seconds, Trace::Slice name, std::int64_t begin) {
+void Strip<Dim>::count_wait(double& seconds, Trace::Slice name, std::int64_t begin,
+                            std::int64_t posted) {
   const std::int64_t end = now_ns();
   seconds += 1e-9 * static_cast<double>(end - begin);
+  waits_.late +=
+      1e-9 * static_cast<double>(std::clamp<std::int64_t>(posted - begin, 0, end - begin));
   if (trace_ != nullptr) trace_->slice(name, 0, begin, end);
+}
+
+template <int Dim>
+std::int64_t Strip<Dim>::bulk_posted_at() const {
+  std::int64_t last = 0;
+  for (const Side side : kSides) {
+    if (shares_clock_[index_of(side)]) last = std::max(last, exchange_->bulk_posted(side));
+  }
+  return last;
 }
 
 template <int Dim>
@@ -58,7 +72,7 @@ void Strip<Dim>::recut() {
   }
   const std::int64_t begin = now_ns();
   taped_sum(communicator_, counts);
-  count_wait(waits_.migration, Trace::Slice::Reduction, begin);
+  count_wait(waits_.migration, Trace::Slice::Reduction, begin, 0);
   cuts_ = barchan::recut(cuts_, counts, total_lanes(), kMinSlabs);
 }
 
@@ -82,7 +96,7 @@ void Strip<Dim>::migrate(const ForEachLane& parallel) {
     discard_pending();
     const std::int64_t begin = now_ns();
     wait_bulk("migration");
-    count_wait(waits_.migration, Trace::Slice::Migration, begin);
+    count_wait(waits_.migration, Trace::Slice::Migration, begin, bulk_posted_at());
     if (neighbours_.has(Side::Left)) lane(0).absorb(exchange_->bulk(Side::Left));
     if (neighbours_.has(Side::Right)) lane(num_lanes() - 1).absorb(exchange_->bulk(Side::Right));
   }
@@ -123,7 +137,7 @@ void Strip<Dim>::exchange_ghosts(const ForEachLane& parallel) {
   if (exchange_) {
     const std::int64_t begin = now_ns();
     wait_bulk("ghosts");
-    count_wait(waits_.ghosts, Trace::Slice::Ghosts, begin);
+    count_wait(waits_.ghosts, Trace::Slice::Ghosts, begin, bulk_posted_at());
   }
   parallel([this](int l) {
     lane(l).take_ghosts(bulk(l, Side::Left), bulk(l, Side::Right));
@@ -139,7 +153,7 @@ void Strip<Dim>::exchange_ghosts(const ForEachLane& parallel) {
   if (returns_) begin_sizes();  // sizes of results follow from the lists
   const std::int64_t begin = now_ns();
   sizes_.wait();
-  count_wait(waits_.ghosts, Trace::Slice::Reduction, begin);
+  count_wait(waits_.ghosts, Trace::Slice::Reduction, begin, 0);
   exchange_->reserve(static_cast<std::size_t>(sizes_.maxima()[0]));
 }
 

@@ -42,6 +42,28 @@ def percent(share):
     return None if share is None else f"{100 * share:.0f} %"
 
 
+def covered(by_delay):
+    """The longest delay that the work of a step is twice as long as: (delay, step there over step at 0 µs, the slope up to
+    there); None where there is none. Ratios are taken within a repetition."""
+    work = median_of(by_delay.get(0, []), "work_us")
+    delays = [d for d in by_delay if d and work and work >= 2 * d]
+    if not delays:
+        return None
+    pairs = list(zip(by_delay[0], by_delay[max(delays)]))
+    ratio = report.median([there["step_us"] / here["step_us"] for here, there in pairs])
+    rise = report.median([there["step_us"] - here["step_us"] for here, there in pairs])
+    return max(delays), ratio, rise / max(delays)
+
+
+def covered_table(groups, size):
+    rows = [[name_of(program, schedule), *covered(by_delay)] for (of_size, program, schedule), by_delay in groups.items()
+            if of_size == size and covered(by_delay)]
+    if not rows:
+        return ""
+    return ("\nThe longest delay here that is at most half the work of a step, the step there over that at 0 µs, and the slope up "
+            "to there.\n\n" + report.table(["exchange, schedule", "delay [µs]", "step over 0 µs", "slope"], rows))
+
+
 def chosen(by_delay):
     """What `auto` took, by delay."""
     return ", ".join(dict.fromkeys(ms[0]["exchange"] for ms in by_delay.values() if "exchange" in ms[0]))
@@ -58,6 +80,7 @@ def markdown(found):
         rows = [[name, *cells, slope(by_delay)] for name, cells, by_delay in
                 rows_of(groups, size, delays, "step_us", lambda v: v)]
         text += report.table(["exchange, schedule", *heads, "slope"], rows)
+        text += covered_table(groups, size)
         text += "\nExposed [µs a step]: workers waiting for messages or inside MPI.\n\n"
         text += report.table(["exchange, schedule", *heads],
                              [[name, *cells] for name, cells, _ in rows_of(groups, size, delays, "exposed_us", lambda v: v)])

@@ -131,16 +131,18 @@ void write_stats(const std::string& path, const Stats& stats, double seconds) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   const auto cpu = [](const timeval& t) { return double(t.tv_sec) + 1e-6 * double(t.tv_usec); };
-  std::fprintf(file,
-               "{\"seconds\": %.3f, \"cpu_seconds\": %.3f, \"packets\": %llu, \"bytes\": %llu, "
-               "\"dropped\": %llu, "
-               "\"not_ours\": %llu, \"sleeps\": %llu, \"timer_lag_us\": %.1f, "
-               "\"late_us\": {\"p50\": %d, \"p99\": %d, \"max\": %.1f}}\n",
-               seconds, cpu(usage.ru_utime) + cpu(usage.ru_stime),
-               (unsigned long long)stats.packets, (unsigned long long)stats.bytes,
-               (unsigned long long)stats.dropped, (unsigned long long)stats.foreign,
-               (unsigned long long)stats.sleeps, 1e-3 * double(stats.timer_lag),
-               stats.late_quantile(0.5), stats.late_quantile(0.99), 1e-3 * double(stats.late_max));
+  std::fprintf(
+      file,
+      "{\"seconds\": %.3f, \"cpu_seconds\": %.3f, \"packets\": %llu, \"bare\": %llu, \"bytes\": "
+      "%llu, "
+      "\"dropped\": %llu, "
+      "\"not_ours\": %llu, \"sleeps\": %llu, \"timer_lag_us\": %.1f, "
+      "\"late_us\": {\"p50\": %d, \"p99\": %d, \"max\": %.1f}}\n",
+      seconds, cpu(usage.ru_utime) + cpu(usage.ru_stime), (unsigned long long)stats.packets,
+      (unsigned long long)stats.bare, (unsigned long long)stats.bytes,
+      (unsigned long long)stats.dropped, (unsigned long long)stats.foreign,
+      (unsigned long long)stats.sleeps, 1e-3 * double(stats.timer_lag), stats.late_quantile(0.5),
+      stats.late_quantile(0.99), 1e-3 * double(stats.late_max));
   std::fclose(file);
 }
 

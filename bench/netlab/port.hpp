@@ -38,6 +38,7 @@ struct Network {
 
 struct Stats {
   std::uint64_t packets = 0, bytes = 0, dropped = 0, foreign = 0, sleeps = 0;
+  std::uint64_t bare = 0;  ///< packets that only acknowledge
   std::array<std::uint64_t, 2001>
       late_us{};  ///< how far behind its time a packet left; the last bin: or more
   Nanoseconds late_max = 0;
@@ -49,6 +50,7 @@ struct Stats {
     dropped += other.dropped;
     foreign += other.foreign;
     sleeps += other.sleeps;
+    bare += other.bare;
     for (std::size_t bin = 0; bin < late_us.size(); ++bin) late_us[bin] += other.late_us[bin];
     late_max = std::max(late_max, other.late_max);
     timer_lag = std::max(timer_lag, other.timer_lag);
@@ -135,6 +137,7 @@ class Port {
       return;
     }
     packet.wire_bytes = frame.wire_bytes();
+    x_stats.bare += frame.is_bare() ? 1 : 0;
     const std::lock_guard<std::mutex> lock(x_network.mutex);
     const auto due =
         x_network.wire.leave(x_host, packet.to, frame.flow(), packet.wire_bytes, now_ns());

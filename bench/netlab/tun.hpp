@@ -109,6 +109,14 @@ class Frame {
     return double(payload + std::max<std::size_t>(segments, 1) * headers);
   }
 
+  /// A TCP packet that carries nothing but an acknowledgement. @pre as flow()
+  bool is_bare() const {
+    const std::size_t tcp = 4u * (ip(0) & 15u);
+    if (ip(9) != 6 || ip_bytes() < tcp + 20) return false;
+    const std::size_t total = ip(2) << 8 | ip(3);
+    return total <= tcp + 4u * (ip(tcp + 12) >> 4);
+  }
+
   static constexpr std::size_t header_size = sizeof(OffloadHeader);
 
  private:

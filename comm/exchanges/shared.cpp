@@ -2,6 +2,7 @@
 
 #include <barchan/comm/exchanges/all.hpp>
 #include <barchan/comm/mpi_error.hpp>
+#include <barchan/comm/reduction.hpp>
 #include <barchan/comm/slot_layout.hpp>
 #include <barchan/comm/window.hpp>
 
@@ -16,6 +17,10 @@ class SharedMemory final : public SlotExchange {
  public:
   using SlotExchange::SlotExchange;
   std::string_view name() const override { return "shared"; }
+  /// Stores need nobody's help; reductions do where they go from rank to rank.
+  bool needs_progress() const override {
+    return communicator().size() > Reduction::default_direct_ranks;
+  }
 
  protected:
   void allocate(SlotCapacity capacity) override {

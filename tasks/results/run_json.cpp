@@ -48,6 +48,7 @@ Json communication_of(const RunSummary& s) {
             {"bytes", s.bytes}};
   for (const auto& [name, time] : s.communication) {
     json[name] = {{"in_flight_seconds", time.in_flight}, {"exposed_seconds", time.exposed}};
+    if (name != "reductions") json[name]["late_seconds"] = time.late;
   }
   return json;
 }

@@ -33,7 +33,8 @@ std::string processor_name() {
 std::string own_numbers(const Simulation& simulation) {
   const Timings t = simulation.timings();
   nlohmann::json kinds;
-  for (const auto& [name, time] : t.communication) kinds[name] = {time.in_flight, time.exposed};
+  for (const auto& [name, time] : t.communication)
+    kinds[name] = {time.in_flight, time.exposed, time.late};
   const nlohmann::json numbers{{"host", host_name()},
                                {"owned", simulation.num_owned()},
                                {"memory", simulation.memory_bytes()},
@@ -66,6 +67,7 @@ void add_numbers(const std::vector<std::string>& of_ranks, RunSummary& summary) 
     for (const auto& [name, time] : n.at("kinds").items()) {
       summary.communication[name].in_flight += share * time.at(0).get<double>();
       summary.communication[name].exposed += share * time.at(1).get<double>();
+      summary.communication[name].late += share * time.at(2).get<double>();
     }
     summary.exposed_most = std::max(summary.exposed_most, n.at("exposed").get<double>());
     summary.in_flight_seconds += share * n.at("in_flight").get<double>();
