@@ -38,8 +38,15 @@ PairJob part_of(PairJob pairs, int part) {
   return pairs;
 }
 
+/// Without this GCC takes a function that only prefetches for one without effect, and leaves calls
+/// of it out.
+[[gnu::always_inline]] inline void keep_calls() {
+  asm volatile("");
+}
+
 template <class T>
 void prefetch_values(const T* begin, std::int64_t count) {
+  keep_calls();
   const auto* bytes = reinterpret_cast<const char*>(begin);
   const std::size_t size = static_cast<std::size_t>(count) * sizeof(T);
   for (std::size_t at = 0; at < size; at += kLine) __builtin_prefetch(bytes + at);
@@ -94,6 +101,7 @@ void Lane<Dim>::run_with_prefetch(PairList& list, const Block& block, const Pair
 
 template <int Dim>
 void Lane<Dim>::prefetch(Rows rows) const {
+  keep_calls();
   for (std::int32_t i = rows.begin; i < rows.end; ++i) {
     const auto at = static_cast<std::size_t>(i);
     __builtin_prefetch(store_.motion.data() + at * L::kMotion);
