@@ -233,10 +233,9 @@ class Lane {
  private:
   struct Block : PairBlock {
     int list = 0;
-    std::int32_t prefetch_begin = 0,
-                 prefetch_end = 0;  ///< rows that blocks before this one have not met
-    std::int32_t final_row = 0;     ///< rows before this one are complete after the block
-    bool has_extras = false;        ///< bonds, walls or external forces among them
+    std::array<Rows, 2> to_come;  ///< rows to ask for (lane_prefetch.cpp)
+    std::int32_t final_row = 0;   ///< rows before this one are complete after the block
+    bool has_extras = false;      ///< bonds, walls or external forces among them
   };
 
   void queue_links(const CheckpointShare& share,
@@ -257,9 +256,13 @@ class Lane {
   [[nodiscard]] std::pair<bool, bool> bond_leaves(std::int32_t bond) const;
   PairJob job(PairList& list) const;
   void run_block(Block& block);
-  void prefetch(const Block& block) const;
+  void run_with_prefetch(PairList& list, const Block& block, const PairJob& pairs) const;
+  void prefetch(Rows rows) const;
   void run_pairs(PairList& list, PairBlock& block, double travel);
-  void run_touching(PairList& list, PairBlock& block, PairJob& pairs, double travel);
+  void run_kernel(const PairList& list, const PairJob& pairs) const;
+  /// The pairs of a block that are worked on.
+  [[nodiscard]] PairJob block_job(PairList& list, PairBlock& block, double travel);
+  void pick_touching(PairList& list, PairBlock& block, PairJob& pairs, double travel);
   [[nodiscard]] double packing_margin() const;  ///< [m]
   /// Of a component of velocity: half the skin in a step [m/s].
   [[nodiscard]] double most_speed() const { return 0.5 * world_->skin / world_->dt; }
@@ -317,6 +320,7 @@ class Lane {
   Planes planes_;
   std::vector<std::int64_t> row_begin_;
   std::vector<Block> blocks_;
+  bool prefetches_ = false;
   std::vector<int> chunks_{0};  ///< first block of each chunk, and the end
   std::int32_t rows_done_ = 0;
   std::int64_t steps_since_start_ = 0;

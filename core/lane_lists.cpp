@@ -143,26 +143,7 @@ void Lane<Dim>::cut_blocks() {
   chunks_ = {0, static_cast<int>(blocks_.size())};
   bands_[Left].inner_blocks = blocks_of(lists_[InnerLow]);
   bands_[Right].inner_blocks = blocks_of(lists_[InnerHigh]);
-  if (packs()) plan_prefetch();
-}
-
-template <int Dim>
-void Lane<Dim>::plan_prefetch() {
-  const PairList& list = lists_[Owned];
-  // While a block is worked on, the rows that the next one meets first are on their way to the
-  // cache.
-  std::int32_t met = 0, to_come = 0;
-  Block* before = nullptr;
-  for (Block& block : blocks_) {
-    if (block.list != Owned) continue;
-    for (std::int64_t k = block.begin; k < block.end; ++k) {
-      const std::int32_t j = list.j[static_cast<std::size_t>(k)];
-      if (j < store_.num_owned) to_come = std::max(to_come, j + 1);
-    }
-    if (before != nullptr) before->prefetch_begin = met, before->prefetch_end = to_come;
-    met = to_come;
-    before = &block;
-  }
+  plan_prefetch();
 }
 
 template <int Dim>

@@ -67,21 +67,15 @@ void Lane<Dim>::run_chunk(int chunk) {
 
 template <int Dim>
 void Lane<Dim>::run_block(Block& block) {
-  prefetch(block);
-  run_pairs(lists_[static_cast<std::size_t>(block.list)], block, travel_);
+  PairList& list = lists_[static_cast<std::size_t>(block.list)];
+  const PairJob pairs = block_job(list, block, travel_);
+  if (prefetches_)
+    run_with_prefetch(list, block, pairs);
+  else
+    run_kernel(list, pairs);
   if (block.final_row > rows_done_) {
     finish_rows(rows_done_, block.final_row, block.has_extras);
     rows_done_ = block.final_row;
-  }
-}
-
-template <int Dim>
-void Lane<Dim>::prefetch(const Block& block) const {
-  for (std::int32_t i = block.prefetch_begin; i < block.prefetch_end; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    __builtin_prefetch(store_.motion.data() + at * L::kMotion);
-    __builtin_prefetch(store_.force.data() + at * L::kForce, 1);
-    if constexpr (Dim == 3) __builtin_prefetch(store_.spin.data() + at * L::kSpin);
   }
 }
 

@@ -87,15 +87,25 @@ double Lane<Dim>::packing_margin() const {
 
 template <int Dim>
 void Lane<Dim>::run_pairs(PairList& list, PairBlock& block, double travel) {
-  PairJob pairs = job(list);
-  pairs.begin = block.begin;
-  pairs.end = block.end;
-  if (packs()) run_touching(list, block, pairs, travel);
+  run_kernel(list, block_job(list, block, travel));
+}
+
+template <int Dim>
+void Lane<Dim>::run_kernel(const PairList& list, const PairJob& pairs) const {
   (list.result.empty() ? world_->kernels.pairs : world_->kernels.pairs_kept)(pairs);
 }
 
 template <int Dim>
-void Lane<Dim>::run_touching(PairList& list, PairBlock& block, PairJob& pairs, double travel) {
+PairJob Lane<Dim>::block_job(PairList& list, PairBlock& block, double travel) {
+  PairJob pairs = job(list);
+  pairs.begin = block.begin;
+  pairs.end = block.end;
+  if (packs()) pick_touching(list, block, pairs, travel);
+  return pairs;
+}
+
+template <int Dim>
+void Lane<Dim>::pick_touching(PairList& list, PairBlock& block, PairJob& pairs, double travel) {
   if (!block.is_packed || travel > block.packed_until) {
     std::array<std::uint8_t, kBlockPairs / kBatch> masks;
     const double margin = packing_margin();

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <new>
 #include <vector>
 
 namespace barchan {
@@ -43,6 +42,10 @@ struct Layout<3> {
 /// Pairs per batch; lists are padded to whole batches with pairs that never touch.
 inline constexpr int kBatch = 8;
 
+/// Memory on cache lines; much of it at once is on huge pages where the system has them. Freed by
+/// std::free. Throws std::bad_alloc.
+void* allocate_lines(std::size_t bytes);
+
 /// Allocates on cache lines, one line more than asked for.
 template <class T>
 struct CacheLineAllocator {
@@ -52,10 +55,7 @@ struct CacheLineAllocator {
   explicit CacheLineAllocator(const CacheLineAllocator<U>& /*other*/) {}
 
   T* allocate(std::size_t n) {
-    const std::size_t bytes = (n * sizeof(T) + 127) / 64 * 64;
-    void* p = std::aligned_alloc(64, bytes);
-    if (p == nullptr) throw std::bad_alloc();
-    return static_cast<T*>(p);
+    return static_cast<T*>(allocate_lines((n * sizeof(T) + 127) / 64 * 64));
   }
   void deallocate(T* p, std::size_t /*n*/) { std::free(p); }
   template <class U>

@@ -43,6 +43,8 @@ def starter(options, delay, program):
     if options.launcher:
         return shlex.split(options.launcher)
     words = [NETLAB, "--hosts", "2", "--delay", f"{delay}us", "--rate", options.rate, "--mtu", options.mtu]
+    if options.even_price:
+        words.append("--even-price")
     if options.realtime:
         words.append("--realtime")
     if program.osc:

@@ -21,7 +21,7 @@ namespace {
 struct Options {
   int hosts = 2;
   WireOptions wire;
-  bool offload = true;
+  bool offload = true, even_price = false;
   std::vector<std::string> cpus;  ///< of each host, such as "0,2"; empty: any
   std::string stats;              ///< file for the figures of the run; empty: none
 };
@@ -62,6 +62,8 @@ Options parse(int argc, char** argv) {
       options.wire.seed = std::strtoull(value, nullptr, 10);
     else if (key == "--offload")
       options.offload = std::atoi(value) != 0;
+    else if (key == "--even-price")
+      options.even_price = std::atoi(value) != 0;
     else if (key == "--cpus")
       options.cpus = split(value, ':');
     else if (key == "--stats")
@@ -159,6 +161,7 @@ int main(int argc, char** argv) try {
   std::signal(SIGTERM, [](int) {});
   const Options options = parse(argc, argv);
   Network network(options.hosts, options.wire);
+  network.even_price = options.even_price;
   sigprocmask(SIG_SETMASK, nullptr, &network.open_signals);
   sigdelset(&network.open_signals, SIGTERM);
   make_devices(options, network);

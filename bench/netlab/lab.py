@@ -133,7 +133,7 @@ class Supervisor:
         values = {"hosts": o.hosts, "delay-ns": round(o.delay), "jitter-ns": round(o.jitter),
                   "spike-share": o.spike[0], "spike-factor": o.spike[1], "rate-bps": o.rate,
                   "queue-bytes": o.queue, "keep-order": int(not o.reorder), "seed": o.seed,
-                  "offload": int(not o.no_offload)}
+                  "offload": int(not o.no_offload), "even-price": int(o.even_price)}
         if self.cpu_lists():
             values["cpus"] = ":".join(self.cpu_lists())
         if o.stats:

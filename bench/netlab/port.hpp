@@ -30,6 +30,7 @@ struct Network {
 
   int hosts;
   std::vector<int> devices;  ///< of the hosts
+  bool even_price = false;   ///< every packet costs a wake-up by a timer, also one that needs none
   sigset_t open_signals{};   ///< the mask under which a port waits
   std::atomic<bool> stop{false};
   std::mutex mutex;  ///< for the wire
@@ -103,6 +104,12 @@ class Port {
   /// it.
   bool wait() {
     pollfd device{x_device, POLLIN, 0};
+    if (x_line.empty() && x_owes_timer) {
+      constexpr timespec shortly{0, 20'000};
+      x_owes_timer = false;
+      ++x_stats.sleeps;
+      return ppoll(&device, 1, &shortly, &x_network.open_signals) > 0;
+    }
     if (x_line.empty()) {
       ++x_stats.sleeps;
       return ppoll(&device, 1, nullptr, &x_network.open_signals) > 0;
@@ -114,12 +121,14 @@ class Port {
     ++x_stats.sleeps;
     const bool has_input = ppoll(&device, 1, &timeout, &x_network.open_signals) > 0;
     constexpr Nanoseconds largest = 50'000;  // a stall of the machine is no lag of timers
-    if (!has_input)
-      x_stats.timer_lag += (std::min(now_ns() - start - sleep, largest) - x_stats.timer_lag) / 16;
-    return has_input;
+    if (has_input) return true;
+    x_had_timer = true;
+    x_stats.timer_lag += (std::min(now_ns() - start - sleep, largest) - x_stats.timer_lag) / 16;
+    return false;
   }
 
   void take() {
+    x_had_timer = false;
     constexpr int batch = 64;
     for (int n = 0; n < batch; ++n) {
       const ssize_t size = read(x_device, x_scratch.data(), x_scratch.size());
@@ -182,6 +191,7 @@ class Port {
       ++x_stats.dropped;
       return;
     }
+    x_owes_timer |= x_network.even_price && !x_had_timer;
     const Nanoseconds late = std::max<Nanoseconds>(now_ns() - packet.due, 0);
     x_stats.late_max = std::max(x_stats.late_max, late);
     ++x_stats.late_us[std::min<std::size_t>(std::size_t(late / 1000), x_stats.late_us.size() - 1)];
@@ -196,6 +206,7 @@ class Port {
   std::priority_queue<Packet, std::vector<Packet>, Later> x_line;
   std::vector<char> x_scratch;
   std::uint64_t x_order = 0;
+  bool x_had_timer = false, x_owes_timer = false;
 };
 
 }  // namespace netlab
