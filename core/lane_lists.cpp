@@ -53,7 +53,7 @@ void Lane<Dim>::find_owned() {
 
   planes_.write(store_, {0, n});
   const ContactSearch<Dim> search(world_->grid, store_, planes_, search_rule());
-  row_begin_.resize(static_cast<std::size_t>(n));
+  resize_with_room(row_begin_, static_cast<std::size_t>(n));
   for (PairList& list : lists_) list.clear();
   search.owned(cells_, {0, low}, lists_[HeldLow], row_begin_);
   part(HeldLow, 0);

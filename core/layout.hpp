@@ -67,10 +67,10 @@ struct CacheLineAllocator {
 template <class T>
 using AlignedVector = std::vector<T, CacheLineAllocator<T>>;
 
-/// Resizes; where memory must grow, by an eighth more than asked for and not to twice as much.
+/// Resizes; where memory must grow, by a sixteenth more than asked for and not to twice as much.
 template <class Vector>
 void resize_with_room(Vector& v, std::size_t n) {
-  if (n > v.capacity()) v.reserve(n + n / 8);
+  if (n > v.capacity()) v.reserve(n + n / 16);
   v.resize(n);
 }
 

@@ -68,9 +68,9 @@ struct PairList {
   /// Gives memory back where pushing has left much more than is needed.
   void trim() {
     const auto fit = [](auto& column) {
-      if (column.capacity() < column.size() + column.size() / 6) return;
+      if (column.capacity() < column.size() + column.size() / 8) return;
       std::remove_reference_t<decltype(column)> fitting;
-      fitting.reserve(column.size() + column.size() / 8);
+      fitting.reserve(column.size() + column.size() / 16);
       fitting.assign(column.begin(), column.end());
       column.swap(fitting);
     };
