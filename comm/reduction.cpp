@@ -125,6 +125,21 @@ struct Reduction::State {
     return is_there != 0;
   }
 
+  /// The ranks whose part has not come, in words; empty where nobody can tell.
+  [[nodiscard]] std::string missing() const {
+    std::string ranks;
+    if (!is_direct || is_played()) return ranks;
+    std::size_t other = 0;
+    for (int rank = 0; rank < communicator.size(); ++rank) {
+      if (rank == communicator.rank()) continue;
+      int is_there = 0;
+      check(MPI_Request_get_status(requests[other++], &is_there, MPI_STATUS_IGNORE),
+            "MPI_Request_get_status");
+      if (is_there == 0) ranks += (ranks.empty() ? "rank " : ", rank ") + std::to_string(rank);
+    }
+    return ranks.empty() ? ranks : " (missing: " + ranks + ")";
+  }
+
   void finish() {
     is_in_flight = false;
     if (is_played()) {
@@ -226,7 +241,7 @@ void Reduction::wait(double limit_seconds) {
   wait_until([this] { return test(); },
              [this] {
                return "rank " + std::to_string(state_->communicator.rank()) + ": reduction " +
-                      std::to_string(state_->number) + " of all ranks";
+                      std::to_string(state_->number) + " of all ranks" + state_->missing();
              },
              limit_seconds);
 }

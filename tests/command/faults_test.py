@@ -57,7 +57,7 @@ def check_hang(rows_every):
     expect(done.returncode == 1, f"{name}: status {done.returncode}: {done.stderr}")
     expect(any("in vain" in line for line in said), f"{name}: {done.stderr}")
     if rows_every > 1:
-        expect(any("rank 1: " in line and "rank 2 (right)" in line and " of step " in line for line in said),
+        expect(any("rank 1: " in line and ("rank 2 (right)" in line or "missing: rank 2" in line) for line in said),
                f"{name}: rank 1 does not say for whom it waits: {said}")
     expect(not any("rank 2:" in line for line in said), f"{name}: the rank that hangs speaks: {said}")
     wait_for(lambda: not is_there(stopped), f"{name}: the stopped rank to go")

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <random>
+#include <string>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -100,6 +101,29 @@ TEST_P(ReductionEitherWay, RefusesTwoBeginsInARowAndOtherSizes) {
   EXPECT_THROW(reduction.begin(maximum, sum), std::logic_error);
   reduction.wait();
   EXPECT_TRUE(reduction.test());
+}
+
+TEST_P(ReductionEitherWay, NamesTheRankThatIsMissing) {
+  Reduction reduction(comm_, 2, 3, GetParam());
+  const int late = comm_.size() - 1;
+  std::string said;
+  if (comm_.rank() != late) {
+    begin(reduction, 1);
+    try {
+      reduction.wait(0.2);
+    } catch (const WaitError& error) {
+      said = error.what();
+    }
+  }
+  comm_.barrier();
+  if (comm_.rank() == late) begin(reduction, 1);
+  reduction.wait();
+
+  expect(reduction, 1);
+  if (comm_.rank() == late) return;
+  EXPECT_NE(said.find("reduction 1 of all ranks"), std::string::npos) << said;
+  const bool is_named = said.find("rank " + std::to_string(late)) != std::string::npos;
+  EXPECT_EQ(is_named, GetParam() == direct) << said;
 }
 
 TEST_P(ReductionEitherWay, MayBeDroppedInFlight) {
