@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <tuple>
 
 namespace barchan {
 
@@ -22,7 +23,7 @@ struct Suspect {
   double speed2 = -1.0;  ///< squared speed [m²/s²]; the largest number when something is not finite
 };
 
-/// What overlaps most, as a share of the smaller radius.
+/// What overlaps most, as a share of the smaller radius. Plain data: it travels between ranks.
 struct WorstOverlap {
   double share = 0.0;
   double overlap = 0.0;     ///< [m]
@@ -30,6 +31,13 @@ struct WorstOverlap {
   std::int64_t with = 0;    ///< id of the other particle, or
   std::int32_t wall = -1;   ///< the number of a wall
   double position[3] = {};  ///< [m], of the particle
+
+  /// Of equal ones the lowest numbers count, so that it does not matter who looks first.
+  [[nodiscard]] bool is_worse_than(const WorstOverlap& other) const {
+    return share > other.share ||
+           (share == other.share &&
+            std::tie(id, with, wall) < std::tie(other.id, other.with, other.wall));
+  }
 };
 
 /// Contacts with history, contacts with walls that have one, and bonds; each counted on one lane.

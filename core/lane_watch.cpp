@@ -22,17 +22,19 @@ void take_worst_pair(const ParticleStore<Dim>& store, const PeriodicBox& box, co
     if (list.code[at] == LawTable::kBonded || i == store.waste()) continue;
     const double reach = store.radius(i) + store.radius(j),
                  least = std::min(store.radius(i), store.radius(j));
-    const double known = reach - worst.share * least;  // no root for those that overlap less
+    // No root for those that overlap less.
+    const double known = reach - kTouching * worst.share * least;
     const double d2 = distance2<Dim>(box, store.x(i), store.x(j));
     if (d2 >= known * known && known > 0.0) continue;
     const double overlap = reach - std::sqrt(d2);
-    if (!(overlap > worst.share * least)) continue;
-    worst.share = overlap / least;
-    worst.overlap = overlap;
-    worst.id = store.id[static_cast<std::size_t>(i)];
-    worst.with = store.id[static_cast<std::size_t>(j)];
-    worst.wall = -1;
-    std::copy_n(store.x(i), Dim, worst.position);
+    WorstOverlap here{overlap / least,
+                      overlap,
+                      store.id[static_cast<std::size_t>(i)],
+                      store.id[static_cast<std::size_t>(j)],
+                      -1,
+                      {}};
+    std::copy_n(store.x(i), Dim, here.position);
+    if (overlap > 0.0 && here.is_worse_than(worst)) worst = here;
   }
 }
 
@@ -189,9 +191,10 @@ WorstOverlap Lane<Dim>::worst_overlap() const {
     const double overlap =
         radius - WallContacts<Dim>::nearest(world_->wall_specs[w], world_->walls[w],
                                             store_.x(c.row), to_wall);
-    if (!(overlap > worst.share * radius)) continue;
-    worst = {overlap / radius, overlap, store_.id[static_cast<std::size_t>(c.row)], 0, c.wall, {}};
-    std::copy_n(store_.x(c.row), Dim, worst.position);
+    WorstOverlap here{overlap / radius, overlap, store_.id[static_cast<std::size_t>(c.row)], 0,
+                      c.wall,           {}};
+    std::copy_n(store_.x(c.row), Dim, here.position);
+    if (overlap > 0.0 && here.is_worse_than(worst)) worst = here;
   }
   return worst;
 }

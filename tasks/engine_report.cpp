@@ -106,17 +106,21 @@ template <int Dim>
 std::string Simulation::EngineOf<Dim>::describe_worst_overlap() {
   strip_->complete_halo();
   WorstOverlap worst;
-  for (int l = 0; l < strip_->num_lanes(); ++l) {
-    const WorstOverlap lane = strip_->lane(l).worst_overlap();
-    if (lane.share > worst.share) worst = lane;
+  const auto take = [&worst](const WorstOverlap& other) {
+    if (other.is_worse_than(worst)) worst = other;
+  };
+  for (int l = 0; l < strip_->num_lanes(); ++l) take(strip_->lane(l).worst_overlap());
+  for (const auto& bytes : communicator_.gather(std::as_bytes(std::span(&worst, 1)))) {
+    WorstOverlap of_rank;
+    std::memcpy(&of_rank, bytes.data(), sizeof of_rank);
+    take(of_rank);
   }
   const std::string with =
       worst.wall >= 0 ? "wall '" + model_.walls[static_cast<std::size_t>(worst.wall)].name + "'"
                       : fmt::format("particle {}", worst.with);
-  return from_rank_with_most(
-      worst.share,
-      fmt::format("now it is largest between particle {} at {} and {}: {:.3g} m, {:.3g} "
-                  "of the smaller radius",
+  return communicator_.bcast(
+      fmt::format("now it is largest between particle {} at {} and {}: {:.3g} m, {:.3g} of the "
+                  "smaller radius",
                   worst.id, in_brackets(worst.position, Dim), with, worst.overlap, worst.share));
 }
 

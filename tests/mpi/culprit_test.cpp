@@ -57,6 +57,35 @@ TEST(Culprit, OneThatOutranTheSkinIsNamedAlikeOnAnyNumberOfRanksAndThreads) {
   EXPECT_GT(told, 0);
 }
 
+/// Disks of one size that fall side by side overlap the floor alike: the lowest number is named.
+TEST(Culprit, OfEqualOverlapsTheSameIsNamedOnAnyNumberOfRanksAndThreads) {
+  Scenario s = moving_walls();
+  s.model.limits = {0.01, 0.02};
+  s.set.particles.resize(36);
+  for (std::size_t p = 0; p < s.set.particles.size(); ++p) {
+    ParticleData& particle = s.set.particles[p];
+    particle.id = static_cast<std::int64_t>(s.set.particles.size() - p);
+    particle.radius = 0.04;
+    particle.position = Vec3(0.2 + 0.1 * static_cast<double>(p), 0.06, 0.0);
+    particle.velocity = Vec3(0.0, -1.0, 0.0);
+  }
+  const auto error = [&](MPI_Comm comm, int threads) -> std::string {
+    Simulation sim(s.model, s.set, comm, with_threads(threads));
+    try {
+      for (int piece = 0; piece < 100; ++piece) {
+        sim.run(5);
+        (void)sim.measure();
+      }
+    } catch (const AgreedError& e) {
+      return e.what();
+    }
+    return {};
+  };
+  const std::string expected = from_root(is_root() ? error(MPI_COMM_SELF, 1) : "");
+  EXPECT_NE(expected.find("between particle 1 at"), std::string::npos) << expected;
+  for (const int threads : {1, 2}) EXPECT_EQ(error(MPI_COMM_WORLD, threads), expected);
+}
+
 /// Every rank by itself: one that knows alone would leave the others waiting.
 TEST(Culprit, OneThatGoesWildIsNamedInThatStepAlikeOnAnyNumberOfThreads) {
   const Scenario s = soil_with_ring_and_plate();
