@@ -243,8 +243,9 @@ class Lane {
   /// Largest squared displacement since the last rebuild that a step was computed with: before its
   /// drift.
   [[nodiscard]] double distance2_of_last_step() const;
-  [[nodiscard]] int direction_of(std::int64_t key) const;  ///< 0 here, 1 left, 2 right
-  static constexpr std::int8_t kGone = 3;                  ///< as a direction: out of the domain
+  /// 0 here, 1 left, 2 right
+  [[nodiscard]] int direction_of(std::int64_t key, std::int64_t key_before) const;
+  static constexpr std::int8_t kGone = 3;  ///< as a direction: out of the domain
   [[nodiscard]] bool is_removed(std::int32_t row) const {
     return !removed_.empty() && std::binary_search(removed_.begin(), removed_.end(),
                                                    store_.id[static_cast<std::size_t>(row)]);

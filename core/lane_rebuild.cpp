@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <utility>
 
 #include <barchan/core/bytes.hpp>
 #include <barchan/core/lane.hpp>
@@ -41,15 +42,18 @@ void write_row(ParticleStore<Dim>& s, std::int32_t row, const ParticleRecord<Dim
 }  // namespace
 
 template <int Dim>
-int Lane<Dim>::direction_of(std::int64_t key) const {
+int Lane<Dim>::direction_of(std::int64_t key, std::int64_t key_before) const {
   const std::int64_t slab_size = world_->grid.slab_size();
   if (key >= slab_begin_ * slab_size && key < slab_end_ * slab_size) return 0;
   const int slab = static_cast<int>(key / slab_size);
   if (!bands_[Left].exists || !bands_[Right].exists) return bands_[Right].exists ? 2 : 1;
   if (!world_->grid.is_periodic(0)) return slab >= slab_end_ ? 2 : 1;
-  // The shorter way round; the cuts move by less than a strip at a time.
-  const int n = world_->grid.num_slabs();
-  return (slab - slab_end_ + n) % n < (slab_begin_ - 1 - slab + n) % n ? 2 : 1;
+  // It has gone the shorter way from where it was, maybe around an end of the box. From the new
+  // strip the shorter way may be the wrong one: cuts move by up to a strip at a time.
+  const int n = world_->grid.num_slabs(), before = static_cast<int>(key_before / slab_size);
+  const int way = slab - before;
+  const int unwrapped = 2 * way > n ? slab - n : 2 * way < -n ? slab + n : slab;
+  return unwrapped >= slab_end_ ? 2 : 1;
 }
 
 template <int Dim>
@@ -84,8 +88,8 @@ void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byt
   for (std::int32_t i = 0; i < n; ++i) {
     world_->grid.wrap(store_.x(i));
     const auto at = static_cast<std::size_t>(i);
-    store_.key[at] = world_->grid.key(store_.x(i));
-    goes_[at] = static_cast<std::int8_t>(direction_of(store_.key[at]));
+    const std::int64_t key_before = std::exchange(store_.key[at], world_->grid.key(store_.x(i)));
+    goes_[at] = static_cast<std::int8_t>(direction_of(store_.key[at], key_before));
     if (is_removed(i) || loses(Loss::Particle)) goes_[at] = kGone;
     if (goes_[at] == 0 || goes_[at] == kGone) continue;
     auto& leavers = out[static_cast<std::size_t>(goes_[at] - 1)].particles;
