@@ -67,6 +67,10 @@ void ContactSearch<Dim>::set_laws(std::int32_t i, PairList& list, std::int64_t b
   const auto a = static_cast<std::size_t>(i);
   const int type = store_.type[a];
   const bool has_bond = (store_.flags[a] & ParticleStore<Dim>::kBonded) != 0;
+  if (!has_bond && rule_.laws->num_materials() == 1) {
+    std::fill(list.code.begin() + begin, list.code.begin() + end, rule_.laws->code(type, type));
+    return;
+  }
   for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
     const auto b = static_cast<std::size_t>(list.j[k]);
     const bool is_bonded = has_bond && (store_.flags[b] & ParticleStore<Dim>::kBonded) != 0 &&

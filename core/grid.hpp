@@ -16,7 +16,8 @@ double distance2(const PeriodicBox& box, const double* p, const double* q) {
   double d2 = 0.0;
   for (int c = 0; c < Dim; ++c) {
     double d = q[c] - p[c];
-    d -= box.length[c] * std::rint(d * box.inverse[c]);
+    const double boxes = d * box.inverse[c];
+    if (std::abs(boxes) > 0.5) d -= box.length[c] * std::rint(boxes);  // rarely: rint is a call
     d2 += d * d;
   }
   return d2;

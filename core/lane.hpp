@@ -296,9 +296,11 @@ class Lane {
     std::int64_t k = -1;
   };
   Slot slot(std::int32_t a, std::int32_t b);
+  Slot owned_slot(std::int32_t low, std::int32_t high);
   Slot find_pair(PairList& list, std::pair<std::int32_t, std::int32_t> wanted) const;
   std::int32_t find_near(std::int32_t row, std::int64_t id) const;
   void place(std::int32_t a, std::int32_t b, const double* spring_a_to_b);
+  static void put(const Slot& at, bool is_swapped, const double* spring);
   /// @param number  of every row that leaves, its place among the leavers
   void collect_history(std::array<Migration<Dim>, 2>& leaving,
                        std::span<const std::int32_t> number);
@@ -338,10 +340,11 @@ class Lane {
   };
   std::vector<KeptContact> kept_;
 
-  static KeptContact kept(const PairList& list, std::int64_t k, std::int32_t i, std::int32_t j) {
-    KeptContact c{i, j, {}};
+  /// Written where it stays: a copy of it soon after would wait for these stores.
+  static void keep(KeptContact& c, const PairList& list, std::int64_t k, std::int32_t i,
+                   std::int32_t j) {
+    c.i = i, c.j = j;
     for (int q = 0; q < L::kSprings; ++q) c.spring[q] = list.springs<Dim>(k)[q * kBatch];
-    return c;
   }
   static void keep_springs(const PairList& list, std::vector<KeptContact>& to);
   /// Springs of pairs that are in both.

@@ -70,11 +70,11 @@ void Lane<Dim>::keep_staying(const PairList& list, const PairBlock& block,
     return store_.is_owned(row) && goes_[static_cast<std::size_t>(row)] == 0;
   };
   std::size_t count = kept_.size();
-  kept_.resize(count + static_cast<std::size_t>(block.end - block.begin));
+  kept_.resize(count + static_cast<std::size_t>(block.num_worked_on()));
   block.for_each_worked_on(list, [&](std::size_t at, std::int32_t low, std::int32_t high) {
     const auto k = static_cast<std::int64_t>(at);
     if (!stays(low) || !stays(high)) return loosen(list, k, {low, high}, true, leaving, number);
-    kept_[count] = kept(list, k, low, high);
+    keep(kept_[count], list, k, low, high);
     count += list.template has_spring<Dim>(k) ? 1 : 0;
   });
   kept_.resize(count);
@@ -105,18 +105,20 @@ void Lane<Dim>::loosen(const PairList& list, std::int64_t k, std::array<std::int
 }
 
 template <int Dim>
-typename Lane<Dim>::Slot Lane<Dim>::slot(std::int32_t a, std::int32_t b) {
-  if (store_.is_owned(a) && store_.is_owned(b)) {
-    const std::int32_t low = std::min(a, b), high = std::max(a, b);
-    const ListName name = list_of(low, high);
-    PairList& list = lists_[name];
-    if (name == HeldLow || name == HeldHigh) return find_pair(list, {low, high});
-    for (std::int64_t k = row_begin_[static_cast<std::size_t>(low)];
-         k < list.size() && list.i[static_cast<std::size_t>(k)] == low; ++k) {
-      if (list.j[static_cast<std::size_t>(k)] == high) return {&list, k};
-    }
-    return {};
+typename Lane<Dim>::Slot Lane<Dim>::owned_slot(std::int32_t low, std::int32_t high) {
+  const ListName name = list_of(low, high);
+  PairList& list = lists_[name];
+  if (name == HeldLow || name == HeldHigh) return find_pair(list, {low, high});
+  for (std::int64_t k = row_begin_[static_cast<std::size_t>(low)];
+       k < list.size() && list.i[static_cast<std::size_t>(k)] == low; ++k) {
+    if (list.j[static_cast<std::size_t>(k)] == high) return {&list, k};
   }
+  return {};
+}
+
+template <int Dim>
+typename Lane<Dim>::Slot Lane<Dim>::slot(std::int32_t a, std::int32_t b) {
+  if (store_.is_owned(a) && store_.is_owned(b)) return owned_slot(std::min(a, b), std::max(a, b));
   const std::int32_t ghost = store_.is_owned(a) ? b : a, own = store_.is_owned(a) ? a : b;
   Band& band = bands_[ghost < store_.ghost_begin(Right) ? Left : Right];
   return find_pair(band.across, band.ghosts_first ? std::pair(ghost, own) : std::pair(own, ghost));
@@ -170,17 +172,26 @@ void Lane<Dim>::place(std::int32_t a, std::int32_t b, const double* spring) {
   // What comes from both sides, and what the lane right of a cut counts, is not counted again.
   const bool counts = at.list != &bands_[Right].across && !at.list->template has_spring<Dim>(at.k);
   if (counts) ++imbalance_.contacts;
-  const bool swapped = at.list->i[static_cast<std::size_t>(at.k)] != a;
+  put(at, at.list->i[static_cast<std::size_t>(at.k)] != a, spring);
+}
+
+template <int Dim>
+void Lane<Dim>::put(const Slot& at, bool is_swapped, const double* spring) {
+  const double sign = Dim == 3 && is_swapped ? -1.0 : 1.0;
   for (int c = 0; c < L::kSprings; ++c)
-    at.list->template springs<Dim>(at.k)[c * kBatch] = Dim == 3 && swapped ? -spring[c] : spring[c];
+    at.list->template springs<Dim>(at.k)[c * kBatch] = sign * spring[c];
 }
 
 template <int Dim>
 void Lane<Dim>::restore_history() {
   for (const KeptContact& c : kept_) {
     if (loses(Loss::Contact)) continue;
-    place(new_row_[static_cast<std::size_t>(c.i)], new_row_[static_cast<std::size_t>(c.j)],
-          c.spring);
+    const std::int32_t a = new_row_[static_cast<std::size_t>(c.i)],
+                       b = new_row_[static_cast<std::size_t>(c.j)];
+    const Slot at = owned_slot(std::min(a, b), std::max(a, b));
+    if (at.list == nullptr) continue;  // no longer a candidate, so out of touch
+    put(at, a > b, c.spring);
+    ++imbalance_.contacts;
   }
   kept_.clear();
   for (const LooseContact<Dim>& c : loose_) {

@@ -230,7 +230,7 @@ template <int Dim>
 void Lane<Dim>::keep_springs(const PairList& list, std::vector<KeptContact>& to) {
   for (std::int64_t k = 0; k < list.size(); ++k) {
     const auto at = static_cast<std::size_t>(k);
-    if (list.template has_spring<Dim>(k)) to.push_back(kept(list, k, list.i[at], list.j[at]));
+    if (list.template has_spring<Dim>(k)) keep(to.emplace_back(), list, k, list.i[at], list.j[at]);
   }
 }
 

@@ -118,12 +118,13 @@ struct PairBlock {
   double packed_until =
       0.0;  ///< mean travel of the two of a pair up to which no other can touch [m]
 
+  [[nodiscard]] std::int64_t num_worked_on() const { return is_packed ? num_packed : end - begin; }
   /// Calls f(k, i, j) for the pairs that have a result.
   template <class F>
   void for_each_worked_on(const PairList& list, F&& f) const {
     const auto& first = is_packed ? list.packed_i : list.i;
     const auto& second = is_packed ? list.packed_j : list.j;
-    const std::int64_t last = is_packed ? begin + num_packed : end;
+    const std::int64_t last = begin + num_worked_on();
     for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(last); ++k)
       f(k, first[k], second[k]);
   }
