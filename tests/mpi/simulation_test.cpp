@@ -166,6 +166,27 @@ TEST(SameBits, CloudExpandingIntoEmptyStripsWhileCutsMove) {
   (void)expect_same_bits(expansion(), 8);
 }
 
+/// A cloud goes around the end of a periodic box and leaves but few at rest far behind. A cut leaps
+/// back over all that is empty; from where its strip is then, the shorter way to what it passed is
+/// the wrong one, around the end. With one column at rest this happens to four strips, with two to
+/// three.
+Scenario cloud_around_the_end(int columns_at_rest) {
+  Scenario s{"a cloud goes around the end", plain_model(2, 6.0, 0.4), {}, 160, {}, true};
+  s.model.domain.periodic[0] = true;
+  add_box_walls(s.model);
+  add_cloud(s.set, 2, {{4.2, 0.0, 0.0}, {6.0, 0.4, 0.0}, 0.18, 0.055, 0.5, 1});
+  for (ParticleData& p : s.set.particles) p.velocity[0] += 8.0;
+  const double end = 1.95 + 0.1 * columns_at_rest;
+  add_cloud(s.set, 2, {{1.9, 0.0, 0.0}, {end, 0.4, 0.0}, 0.1, 0.05, 0.0, 13});
+  shuffle_ids(s.set, 11);
+  return s;
+}
+
+TEST(SameBits, CloudAroundThePeriodicEndWhileCutsMoveFar) {
+  (void)expect_same_bits(cloud_around_the_end(1), 19);
+  (void)expect_same_bits(cloud_around_the_end(2), 20);
+}
+
 TEST(SameBits, AllParticlesInOneSlab) {
   (void)expect_same_bits(one_slab(), 9);
 }
