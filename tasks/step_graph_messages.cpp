@@ -63,7 +63,7 @@ void StepGraph<Dim>::notice(Side side) {
   arrived_[index_of(side)] = true;
   if (arrived_[0] && arrived_[1] && sent_at_ != 0) flight_ns_ += now - sent_at_;
   if (trace_ != nullptr) trace_->noticed(side, trace_->step(), now);
-  if (lanes_left_ >= 0) signal(lane, side);
+  if (lanes_left_ >= 0) signal(lane, side, 0);
 }
 
 /// On the progress thread. What it finds stays found until a worker looks.
@@ -76,6 +76,13 @@ void StepGraph<Dim>::drive() {
   for (const Side side : kSides) {
     if (!arrived_[index_of(side)] && may_poll(side)) (void)exchange.poll(side);
   }
+}
+
+/// In the midst of a lane's chunks: somebody waits, or messages need it to come.
+template <int Dim>
+bool StepGraph<Dim>::is_poll_of_use() const {
+  return lanes_left_ < strip_.num_lanes() ||
+         (strip_.exchange() != nullptr && strip_.exchange()->needs_progress());
 }
 
 template <int Dim>
