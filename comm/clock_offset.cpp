@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include <barchan/comm/call_watch.hpp>
 #include <barchan/comm/clock.hpp>
 #include <barchan/comm/links.hpp>
 #include <barchan/comm/mpi_error.hpp>
@@ -13,12 +14,14 @@ constexpr int num_trips = 50;
 constexpr int trip_tag = 3;
 
 void send(MPI_Comm comm, int to, std::int64_t value) {
-  check(MPI_Send(&value, 1, MPI_INT64_T, to, trip_tag, comm), "MPI_Send");
+  check_watched("MPI_Send", [&] { return MPI_Send(&value, 1, MPI_INT64_T, to, trip_tag, comm); });
 }
 
 std::int64_t receive(MPI_Comm comm, int from) {
   std::int64_t value = 0;
-  check(MPI_Recv(&value, 1, MPI_INT64_T, from, trip_tag, comm, MPI_STATUS_IGNORE), "MPI_Recv");
+  check_watched("MPI_Recv", [&] {
+    return MPI_Recv(&value, 1, MPI_INT64_T, from, trip_tag, comm, MPI_STATUS_IGNORE);
+  });
   return value;
 }
 

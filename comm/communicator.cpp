@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include <barchan/comm/call_watch.hpp>
 #include <barchan/comm/mpi_error.hpp>
 #include <barchan/comm/mpi_session.hpp>
 #include <barchan/comm/watchdog.hpp>
@@ -47,7 +48,7 @@ Communicator::Communicator(MPI_Comm caller) {
         "MPI is not running: call MPI_Init_thread with MPI_THREAD_SERIALIZED, or make a "
         "barchan::MpiSession, before using barchan");
   }
-  check(MPI_Comm_dup(caller, &comm_), "MPI_Comm_dup");
+  check_watched("MPI_Comm_dup", [&] { return MPI_Comm_dup(caller, &comm_); });
   check(MPI_Comm_set_errhandler(comm_, MPI_ERRORS_RETURN), "MPI_Comm_set_errhandler");
   check(MPI_Comm_rank(comm_, &rank_), "MPI_Comm_rank");
   check(MPI_Comm_size(comm_, &size_), "MPI_Comm_size");
@@ -82,17 +83,21 @@ Communicator& Communicator::operator=(Communicator&& other) noexcept {
 
 void Communicator::free() noexcept {
   const bool may_free = comm_ != MPI_COMM_NULL && is_mpi_initialized() && !is_given_up_;
-  if (may_free) MPI_Comm_free(&comm_);
+  if (may_free) {
+    const CallWatch watch("MPI_Comm_free");
+    MPI_Comm_free(&comm_);
+  }
   comm_ = MPI_COMM_NULL;
 }
 
 void Communicator::find_node() {
   MPI_Comm node = MPI_COMM_NULL;
-  check(MPI_Comm_split_type(comm_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &node),
-        "MPI_Comm_split_type");
+  check_watched("MPI_Comm_split_type", [&] {
+    return MPI_Comm_split_type(comm_, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &node);
+  });
   check(MPI_Comm_rank(node, &node_rank_), "MPI_Comm_rank");
   check(MPI_Comm_size(node, &node_size_), "MPI_Comm_size");
-  check(MPI_Comm_free(&node), "MPI_Comm_free");
+  check_watched("MPI_Comm_free", [&] { return MPI_Comm_free(&node); });
 }
 
 void Communicator::abort(int status) const {
@@ -114,9 +119,9 @@ void Communicator::await(MPI_Request request, const std::string& what, double li
 
 Communicator Communicator::split(int group) const {
   MPI_Comm part = MPI_COMM_NULL;
-  check(MPI_Comm_split(comm_, group, rank_, &part), "MPI_Comm_split");
+  check_watched("MPI_Comm_split", [&] { return MPI_Comm_split(comm_, group, rank_, &part); });
   Communicator mine(part);
-  check(MPI_Comm_free(&part), "MPI_Comm_free");
+  check_watched("MPI_Comm_free", [&] { return MPI_Comm_free(&part); });
   return mine;
 }
 

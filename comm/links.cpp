@@ -1,5 +1,6 @@
 #include <barchan/comm/links.hpp>
 
+#include <barchan/comm/call_watch.hpp>
 #include <barchan/comm/mpi_error.hpp>
 
 namespace barchan {
@@ -8,12 +9,15 @@ namespace {
 /// The lowest rank that shares memory with this one.
 std::int64_t node_of(const Communicator& communicator) {
   MPI_Comm node = MPI_COMM_NULL;
-  check(MPI_Comm_split_type(communicator.handle(), MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &node),
-        "MPI_Comm_split_type");
+  check_watched("MPI_Comm_split_type", [&] {
+    return MPI_Comm_split_type(communicator.handle(), MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL,
+                               &node);
+  });
   std::int64_t lowest = communicator.rank();
-  const int code = MPI_Allreduce(MPI_IN_PLACE, &lowest, 1, MPI_INT64_T, MPI_MIN, node);
-  check(MPI_Comm_free(&node), "MPI_Comm_free");
-  check(code, "MPI_Allreduce");
+  check_watched("MPI_Allreduce", [&] {
+    return MPI_Allreduce(MPI_IN_PLACE, &lowest, 1, MPI_INT64_T, MPI_MIN, node);
+  });
+  check_watched("MPI_Comm_free", [&] { return MPI_Comm_free(&node); });
   return lowest;
 }
 

@@ -5,10 +5,14 @@
 #include <exception>
 #include <thread>
 
+#include <barchan/comm/call_watch.hpp>
 #include <barchan/comm/mpi_error.hpp>
 
 namespace barchan {
 namespace {
+
+// In wait limits: others may still be started, or write files.
+constexpr double start_patience = 10.0, end_patience = 10.0;
 
 /// MPICH before 4.2 over UCX: a rank that has taken its leave waits in MPI_Finalize without moving
 /// messages, so one that is slower by then waits for ever (pmodels/mpich #6596). Seldom where all
@@ -16,6 +20,7 @@ namespace {
 void leave_together() {
 #if defined(MPICH_NUMVERSION) && MPICH_NUMVERSION < 40200000
   constexpr std::chrono::milliseconds pause{20};
+  const CallWatch watch("MPI_Barrier", end_patience);
   MPI_Barrier(MPI_COMM_WORLD);
   std::this_thread::sleep_for(pause);
 #endif
@@ -33,7 +38,10 @@ MpiSession::MpiSession(int& argc, char**& argv) {
 void MpiSession::start(int* argc, char*** argv) {
   if (is_mpi_initialized()) return;
   int provided = MPI_THREAD_SINGLE;
-  check(MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &provided), "MPI_Init_thread");
+  {
+    const CallWatch watch("MPI_Init_thread", start_patience);
+    check(MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &provided), "MPI_Init_thread");
+  }
   is_owner_ = true;
   if (provided < MPI_THREAD_SERIALIZED) {
     MPI_Finalize();
@@ -47,6 +55,7 @@ void MpiSession::start(int* argc, char*** argv) {
 MpiSession::~MpiSession() {
   if (!is_owner_ || !is_mpi_initialized()) return;
   leave_together();
+  const CallWatch watch("MPI_Finalize", end_patience);
   MPI_Finalize();
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <barchan/comm/call_watch.hpp>
 #include <barchan/comm/clock.hpp>
 #include <barchan/comm/mpi_error.hpp>
 #include <barchan/comm/watchdog.hpp>
@@ -64,6 +65,7 @@ double bounce(Put& put, bool begins) {
 }
 
 double median_bounce(Put& put, bool begins, int count) {
+  const CallWatch watch("MPI_Win_flush");  // one for all of them, which would cost as much as they
   std::vector<double> times;
   for (int n = 0; n < count; ++n) times.push_back(bounce(put, begins));
   std::ranges::nth_element(times, times.begin() + count / 2);

@@ -5,10 +5,18 @@
 #include <string>
 #include <utility>
 
+#include <barchan/comm/call_watch.hpp>
 #include <barchan/comm/mpi_error.hpp>
 #include <barchan/comm/mpi_session.hpp>
 
 namespace barchan {
+namespace {
+
+void wait(MPI_Request& request) {
+  check_watched("MPI_Wait", [&] { return MPI_Wait(&request, MPI_STATUS_IGNORE); });
+}
+
+}  // namespace
 
 TwoSidedExchange::TwoSidedExchange(const Communicator& communicator, Neighbours neighbours)
     : SlotExchange(communicator, neighbours), num_exceptions_(std::uncaught_exceptions()) {}
@@ -23,7 +31,10 @@ TwoSidedExchange::~TwoSidedExchange() {
     return;
   }
   for (auto& pair : outboxes_) {
-    for (Slot& slot : pair) MPI_Wait(&slot.request, MPI_STATUS_IGNORE);
+    for (Slot& slot : pair) {
+      const CallWatch watch("MPI_Wait");
+      MPI_Wait(&slot.request, MPI_STATUS_IGNORE);
+    }
   }
 }
 
@@ -41,7 +52,7 @@ void TwoSidedExchange::allocate(SlotCapacity capacity) {
 
 void TwoSidedExchange::retire() {
   for (auto& pair : outboxes_) {
-    for (Slot& slot : pair) check(MPI_Wait(&slot.request, MPI_STATUS_IGNORE), "MPI_Wait");
+    for (Slot& slot : pair) wait(slot.request);
   }
 }
 
@@ -49,7 +60,7 @@ void TwoSidedExchange::retire() {
 // neighbour.
 std::byte* TwoSidedExchange::outbox(const MessageKey& key) {
   Slot& slot = outboxes_[index(key)][static_cast<std::size_t>(key.slot())];
-  check(MPI_Wait(&slot.request, MPI_STATUS_IGNORE), "MPI_Wait");
+  wait(slot.request);
   return slot.memory.data();
 }
 

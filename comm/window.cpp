@@ -4,6 +4,7 @@
 #include <exception>
 #include <utility>
 
+#include <barchan/comm/call_watch.hpp>
 #include <barchan/comm/mpi_error.hpp>
 #include <barchan/comm/mpi_session.hpp>
 
@@ -54,6 +55,7 @@ Window::Window(const Communicator& communicator, std::size_t bytes, Memory memor
 int Window::create(const Communicator& communicator, Memory memory) {
   MPI_Info hints = window_hints();
   const auto size = static_cast<MPI_Aint>(bytes_);
+  const CallWatch watch("MPI_Win_allocate");
   const int code =
       memory == Memory::Shared
           ? MPI_Win_allocate_shared(size, 1, hints, communicator.handle(), &base_, &window_)
@@ -90,20 +92,20 @@ Window& Window::operator=(Window&& other) noexcept {
 void Window::free() {
   if (window_ == MPI_WIN_NULL) return;
   unlock_all();
-  check(MPI_Win_free(&window_), "MPI_Win_free");
+  check_watched("MPI_Win_free", [&] { return MPI_Win_free(&window_); });
   base_ = nullptr;
   bytes_ = 0;
 }
 
 void Window::lock_all() {
   if (is_locked_) return;
-  check(MPI_Win_lock_all(MPI_MODE_NOCHECK, window_), "MPI_Win_lock_all");
+  check_watched("MPI_Win_lock_all", [&] { return MPI_Win_lock_all(MPI_MODE_NOCHECK, window_); });
   is_locked_ = true;
 }
 
 void Window::unlock_all() {
   if (!is_locked_) return;
-  check(MPI_Win_unlock_all(window_), "MPI_Win_unlock_all");
+  check_watched("MPI_Win_unlock_all", [&] { return MPI_Win_unlock_all(window_); });
   is_locked_ = false;
 }
 
@@ -123,10 +125,10 @@ void Window::put(std::span<const std::byte> bytes, int target, std::size_t offse
 }
 
 void Window::flush(int target) const {
-  check(MPI_Win_flush(target, window_), "MPI_Win_flush");
+  check_watched("MPI_Win_flush", [&] { return MPI_Win_flush(target, window_); });
 }
 void Window::flush_local(int target) const {
-  check(MPI_Win_flush_local(target, window_), "MPI_Win_flush_local");
+  check_watched("MPI_Win_flush_local", [&] { return MPI_Win_flush_local(target, window_); });
 }
 void Window::sync() const {
   check(MPI_Win_sync(window_), "MPI_Win_sync");

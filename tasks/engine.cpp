@@ -38,7 +38,7 @@ std::int64_t Simulation::EngineOf<Dim>::run(std::int64_t num_steps) {
   const double begin = now();
   std::int64_t done = 0;
   try {
-    for (; done < num_steps && !stopped_; ++done) step();
+    while (done < num_steps && !stopped_) done += go_on(num_steps - done);
   } catch (const AgreedError&) {
     is_in_step_ = false;  // thrown before the step did anything
     throw;
@@ -48,8 +48,9 @@ std::int64_t Simulation::EngineOf<Dim>::run(std::int64_t num_steps) {
   return done;
 }
 
+/// A step, or several where nothing has to be done between them. @return how many
 template <int Dim>
-void Simulation::EngineOf<Dim>::step() {
+std::int64_t Simulation::EngineOf<Dim>::go_on(std::int64_t most) {
   is_in_step_ = true;
   if (trace_) trace_->begin_step(step_);
   strip_->step = step_;
@@ -65,15 +66,48 @@ void Simulation::EngineOf<Dim>::step() {
   frame.kick = step_ == 0 ? 0.5 * world_.dt : world_.dt;
   for (int c = 0; c < 3; ++c) frame.gravity[c] = model_.gravity[c];
   frame.local_damping = model_.stages[static_cast<std::size_t>(stage_)].local_damping;
-  graph_->run(frame);
-  for (int l = 0; l < strip_->num_lanes(); ++l) {
-    if (strip_->lane(l).is_fast()) report_fast(l);
-  }
+  const int steps = steps_in_a_go(most);
+  graph_->run(frame, steps);
+  stop_if_fast();
 
   if (plates_->needs_forces(world_.walls)) plates_->collect(wall_sums(), step_);
   plates_->move(world_.walls);
-  ++step_;
+  step_ += steps;
   is_in_step_ = false;
+  return steps;
+}
+
+/// Lanes need not wait for each other between steps at which nobody looks at all of them. With
+/// neighbours ranks do not anyway.
+template <int Dim>
+int Simulation::EngineOf<Dim>::steps_in_a_go(std::int64_t most) const {
+  const bool is_last_stage = static_cast<std::size_t>(stage_) + 1 == model_.stages.size();
+  const bool walls_stand = std::all_of(
+      world_.walls.begin(), world_.walls.end(),
+      [](const WallState& wall) { return !wall.is_active || wall.velocity == Vec3::Zero(); });
+  if (strip_->exchange() != nullptr || strip_->num_lanes() == 1 || step_ == 0 || !is_last_stage ||
+      !walls_stand || plates_->needs_forces(world_.walls))
+    return 1;
+  int steps = 1;
+  const auto must_look = [this](std::int64_t step) {
+    return schedule_->has_part_in(step) || (keeper_ && keeper_->is_due(step));
+  };
+  while (steps < most && steps < RebuildSchedule::kLongest && !must_look(step_ + steps)) ++steps;
+  return steps;
+}
+
+/// The earliest step in which a lane was, and in that the first lane.
+template <int Dim>
+void Simulation::EngineOf<Dim>::stop_if_fast() {
+  int first = -1;
+  for (int l = 0; l < strip_->num_lanes(); ++l) {
+    if (strip_->lane(l).is_fast() &&
+        (first < 0 || graph_->steps_done(l) < graph_->steps_done(first)))
+      first = l;
+  }
+  if (first < 0) return;
+  step_ += graph_->steps_done(first) - 1;
+  report_fast(first);
 }
 
 /// Chunks of about kChunkSeconds, by what the pairs have cost since the last rebuild. No bit

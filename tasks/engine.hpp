@@ -98,7 +98,9 @@ class Simulation::EngineOf final : public Simulation::Engine {
   void keep_checkpoints();
   [[nodiscard]] bool wants_checkpoint() const;
   void make_trace();
-  void step();
+  std::int64_t go_on(std::int64_t most);
+  [[nodiscard]] int steps_in_a_go(std::int64_t most) const;
+  void stop_if_fast();
   void update_lists();
   void size_chunks();
   void update_stage();

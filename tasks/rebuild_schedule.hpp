@@ -54,6 +54,10 @@ class RebuildSchedule {
 
   /// Whether the check of step `step` is due, so that travel() must be called. Before the step.
   [[nodiscard]] bool is_check_due(std::int64_t step) const { return step == check_step_; }
+  /// Whether a check is due before `step`, or the answer of one.
+  [[nodiscard]] bool has_part_in(std::int64_t step) const {
+    return step == check_step_ || step == check_step_ + kLag;
+  }
   void begin_check(const CheckNumbers& mine, Wishes wishes);
 
   /// The decision for `step`, before it; waits for the reduction when its time has come.

@@ -57,35 +57,36 @@ void StepGraph<Dim>::build() {
   graph_ = std::make_unique<tbb::flow::graph>();
   for (int l = 0; l < strip_.num_lanes(); ++l) {
     LaneNodes& n = nodes_.emplace_back();
-    n.chunk = std::make_unique<ChunkNode>(*graph_, tbb::flow::unlimited, [this, l](int chunk) {
+    n.chunk = std::make_unique<Node>(*graph_, tbb::flow::unlimited, [this, l](int chunk) {
       tell_acquire(&begin_of_step);
       run_chunk(l, chunk);
     });
-    // Each waits for two signals: the work before it, and its ghosts.
-    const auto make_band = [this, l](Side side) {
-      return std::make_unique<BandNode>(*graph_, 2, [this, l, side](Signal) {
-        tell_acquire(&begin_of_step);
-        run_band(l, side);
-      });
-    };
-    n.left = make_band(Side::Left);
-    n.right = make_band(Side::Right);
+    n.band = std::make_unique<Node>(*graph_, tbb::flow::unlimited, [this, l](int side) {
+      tell_acquire(&begin_of_step);
+      run_band(l, static_cast<Side>(side));
+    });
   }
-  drain_ = std::make_unique<tbb::flow::function_node<int, Signal>>(
-      *graph_, tbb::flow::unlimited, [this](int) {
-        tell_acquire(&begin_of_step);
-        const TaskOrder order(drain_.get(), graph_.get());
-        drain(strip_.num_lanes() == 1 && !arrived_[0]);
-      });
+  drain_ = std::make_unique<Node>(*graph_, tbb::flow::unlimited, [this](int) {
+    tell_acquire(&begin_of_step);
+    const TaskOrder order(drain_.get(), graph_.get());
+    drain(strip_.num_lanes() == 1 && !arrived_[0]);
+  });
 }
 
 template <int Dim>
-void StepGraph<Dim>::run(const StepFrame& frame) {
+void StepGraph<Dim>::run(const StepFrame& frame, int num_steps) {
   frame_ = frame;
+  num_steps_ = num_steps;
   arena_.execute([this] {
     lanes_left_ = strip_.num_lanes();
     drain_begin_ = 0;
-    for (LaneNodes& n : nodes_) n.idle_since = 0;
+    for (LaneNodes& n : nodes_) {
+      n.idle_since = 0;
+      n.step = 0;
+      for (auto& sides : n.missing) {
+        for (auto& missing : sides) missing = kBandSignals;
+      }
+    }
     left_is_done_ = false;
     for (const Side side : kSides) arrived_[index_of(side)] = !strip_.awaits(side);
     const ProgressThread::Shift shift(driver_.get());
@@ -94,7 +95,7 @@ void StepGraph<Dim>::run(const StepFrame& frame) {
     for (int l = 0; l < strip_.num_lanes(); ++l) {
       for (const Side side : kSides) {
         if (has_band(l, side) && (!strip_.is_outer(l, side) || arrived_[index_of(side)]))
-          signal(l, side);
+          signal(l, side, 0);
       }
     }
     for (int l = 0; l < strip_.num_lanes(); ++l) put(*nodes_[static_cast<std::size_t>(l)].chunk, 0);
@@ -108,7 +109,6 @@ template <int Dim>
 void StepGraph<Dim>::end_step() {
   require_all_bands();
   strip_.end_step();
-  ++num_steps_;
   sent_at_ = next_sent_at_;
   next_sent_at_ = 0;
   if (trace_ == nullptr) return;
@@ -124,11 +124,13 @@ void StepGraph<Dim>::end_step() {
 template <int Dim>
 void StepGraph<Dim>::require_all_bands() {
   int num_bands = 0;
+  bool is_stopped = false;
   for (int l = 0; l < strip_.num_lanes(); ++l) {
-    for (const Side side : kSides) num_bands += has_band(l, side) ? 1 : 0;
+    for (const Side side : kSides) num_bands += has_band(l, side) ? num_steps_ : 0;
+    is_stopped = is_stopped || strip_.lane(l).is_fast();
   }
   const int done = bands_done_.exchange(0);
-  if (done == num_bands) return;
+  if (done == num_bands || is_stopped) return;
   throw std::logic_error("step graph: " + std::to_string(done) + " of " +
                          std::to_string(num_bands) + " bands were done");
 }
@@ -176,7 +178,7 @@ void StepGraph<Dim>::run_chunk(int l, int chunk) {
   lane.run_chunk(chunk);
   const std::int64_t end = now_ns();
   nodes.chunk_ns += end - begin;
-  if (trace_ != nullptr) trace_->slice(Trace::Slice::Chunk, l, begin, end);
+  if (trace_ != nullptr) trace_->slice(Trace::Slice::Chunk, l, begin, end, nodes.step);
   try_poll(end);
   if (chunk + 1 < lane.num_chunks()) {
     put(*nodes.chunk, chunk + 1);
@@ -186,17 +188,18 @@ void StepGraph<Dim>::run_chunk(int l, int chunk) {
   // Counted before its band may start: on another worker the band looks whether it is the last.
   const bool band_drains = strip_.num_lanes() == 1 && has_band(l, Side::Left) && arrived_[0];
   const bool is_last = lanes_left_.fetch_sub(1) == 1;
-  if (has_band(l, Side::Left))
-    put(*nodes.left, Signal());
-  else if (has_band(l, Side::Right))
-    put(*nodes.right, Signal());
+  const int step = nodes.step;  // bands may end it
+  if (has_band(l, Side::Left) || has_band(l, Side::Right))
+    signal(l, has_band(l, Side::Left) ? Side::Left : Side::Right, step);
+  else
+    end_step(l);
   if (is_last && !band_drains && !(arrived_[0] && arrived_[1])) put(*drain_, 0);
 }
 
 template <int Dim>
 void StepGraph<Dim>::run_band(int l, Side side) {
   LaneNodes& nodes = nodes_[static_cast<std::size_t>(l)];
-  const TaskOrder order(side == Side::Left ? nodes.left.get() : nodes.right.get(), graph_.get());
+  const TaskOrder order(nodes.band.get(), graph_.get());
   const std::int64_t begin = now_ns();
   maybe_delay();
   {
@@ -213,8 +216,12 @@ void StepGraph<Dim>::run_band(int l, Side side) {
   busy_ns_ += end - begin;
   if (trace_ != nullptr)
     trace_->slice(side == Side::Left ? Trace::Slice::LeftBand : Trace::Slice::RightBand, l, begin,
-                  end);
-  if (side == Side::Left && has_band(l, Side::Right)) put(*nodes.right, Signal());
+                  end, nodes.step);
+  signal_beside(l, side);
+  if (side == Side::Left && has_band(l, Side::Right))
+    signal(l, Side::Right, nodes.step);
+  else
+    end_step(l);
   // A lone worker does this band before it waits for the other side; returned forces are not asked
   // for before it.
   const bool is_waited_for =
@@ -223,10 +230,28 @@ void StepGraph<Dim>::run_band(int l, Side side) {
     put(*drain_, 0);
 }
 
+/// @param step  of the run
 template <int Dim>
-void StepGraph<Dim>::signal(int l, Side side) {
+void StepGraph<Dim>::signal(int l, Side side, int step) {
   auto& nodes = nodes_[static_cast<std::size_t>(l)];
-  put(side == Side::Left ? *nodes.left : *nodes.right, Signal());
+  auto& missing = nodes.missing[static_cast<std::size_t>(step % 2)][index_of(side)];
+  if (missing.fetch_sub(1) > 1) return;
+  missing = kBandSignals;
+  put(*nodes.band, static_cast<int>(side));
+}
+
+/// What this band wrote lets the band beyond the cut do its next step.
+template <int Dim>
+void StepGraph<Dim>::signal_beside(int l, Side side) {
+  const int next = nodes_[static_cast<std::size_t>(l)].step + 1;
+  if (next < num_steps_) signal(strip_.lane_beside(l, side), opposite(side), next);
+}
+
+template <int Dim>
+void StepGraph<Dim>::end_step(int l) {
+  LaneNodes& nodes = nodes_[static_cast<std::size_t>(l)];
+  strip_.end_step(l);
+  if (++nodes.step < num_steps_ && !strip_.lane(l).is_fast()) put(*nodes.chunk, 0);
 }
 
 template <int Dim>

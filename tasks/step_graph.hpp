@@ -56,13 +56,24 @@ struct StepTimes {
 /// can be done. With Progress::Thread a thread polls all the time, and chunks only look at what it
 /// found. With Schedule::Sequential the halo is waited for before the first chunk: nothing is
 /// hidden.
+///
+/// A rank without neighbours may take several steps in one go. A lane then begins its next step
+/// when its own is done, whatever the others do, and a band waits for the band beside it, one step
+/// before, as it does between ranks: a worker that was held up for a moment holds up nobody, unless
+/// for longer than a step.
 template <int Dim>
 class StepGraph {
  public:
   StepGraph(Strip<Dim>& strip, const RunOptions& options);
 
-  /// One step on all lanes. @return when all lanes are done and the next halo is on its way
-  void run(const StepFrame& frame);
+  /// Steps on all lanes. @return when all lanes are done and the next halo is on its way. A lane
+  /// that is_fast() goes no further, nor do others that then wait for it.
+  /// @param num_steps  without neighbours any number, else 1
+  void run(const StepFrame& frame, int num_steps = 1);
+  /// How many of the steps of the last run a lane did.
+  [[nodiscard]] int steps_done(int lane) const {
+    return nodes_[static_cast<std::size_t>(lane)].step;
+  }
   /// Runs a function for every lane on the graph's threads.
   void for_each_lane(const std::function<void(int)>& body);
   [[nodiscard]] StepTimes times() const;
@@ -72,11 +83,13 @@ class StepGraph {
 
  private:
   using Signal = tbb::flow::continue_msg;
-  using ChunkNode = tbb::flow::function_node<int, Signal>;
-  using BandNode = tbb::flow::continue_node<Signal>;
+  using Node = tbb::flow::function_node<int, Signal>;
+  static constexpr int kBandSignals = 2;  ///< a band waits for the work before it and its ghosts
   struct LaneNodes {
-    std::unique_ptr<ChunkNode> chunk;
-    std::unique_ptr<BandNode> left, right;
+    std::unique_ptr<Node> chunk, band;  ///< of a chunk, of a side
+    int step = 0;                       ///< of the run
+    /// Signals that a band lacks, by the step's parity and side: the lane beside may be one ahead.
+    std::array<std::array<std::atomic<int>, 2>, 2> missing{};
     std::int64_t chunk_ns = 0, band_ns = 0;
     std::atomic<std::int64_t> idle_since{0};  ///< chunks done, a message missing; 0: not so
   };
@@ -84,11 +97,13 @@ class StepGraph {
   void build();
   void run_chunk(int lane, int chunk);
   void run_band(int lane, Side side);
+  void end_step(int lane);
   void try_poll(std::int64_t begin);
   bool poll_sides();
   void drive();
   [[nodiscard]] bool may_poll(Side side) const;
-  void signal(int lane, Side side);
+  void signal(int lane, Side side, int step);
+  void signal_beside(int lane, Side side);
   void send(int lane, Side side);
   void notice(Side side);
   void drain(bool may_leave);
@@ -104,14 +119,14 @@ class StepGraph {
   tbb::global_control workers_;  ///< as many as asked for, also on a node with fewer cores
   tbb::task_arena arena_;
   std::unique_ptr<tbb::flow::graph> graph_;
-  std::unique_ptr<tbb::flow::function_node<int, Signal>> drain_;
+  std::unique_ptr<Node> drain_;
   StepFrame frame_;
+  int num_steps_ = 1;      ///< of this run
   std::mutex comm_mutex_;  ///< one thread at a time in the exchange
   std::array<std::atomic<bool>, 2> arrived_{};
   std::atomic<int> lanes_left_{0}, bands_done_{0};
   std::atomic<bool> left_is_done_{false};
   std::deque<LaneNodes> nodes_;
-  std::int64_t num_steps_ = 0;
   // In nanoseconds. Under comm_mutex_: send, poll, flights; wait is written by one task at a time.
   std::int64_t send_ns_ = 0, poll_ns_ = 0, wait_ns_ = 0, flight_ns_ = 0;
   std::int64_t late_ns_ = 0;

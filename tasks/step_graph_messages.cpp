@@ -63,7 +63,7 @@ void StepGraph<Dim>::notice(Side side) {
   arrived_[index_of(side)] = true;
   if (arrived_[0] && arrived_[1] && sent_at_ != 0) flight_ns_ += now - sent_at_;
   if (trace_ != nullptr) trace_->noticed(side, trace_->step(), now);
-  if (lanes_left_ >= 0) signal(lane, side);
+  if (lanes_left_ >= 0) signal(lane, side, 0);
 }
 
 /// On the progress thread. What it finds stays found until a worker looks.

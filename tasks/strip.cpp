@@ -43,8 +43,8 @@ bool Strip<Dim>::has_neighbour(int l, Side side) const {
 
 template <int Dim>
 auto Strip<Dim>::inbox(int l, Side side) const -> const Bytes& {
-  const Post& post = posts_[static_cast<std::size_t>(lane_beside(l, side))];
-  return post.halo[static_cast<std::size_t>(parity_)][index_of(opposite(side))];
+  return post(lane_beside(l, side))
+      .halo[static_cast<std::size_t>(post(l).parity)][index_of(opposite(side))];
 }
 
 template <int Dim>
@@ -68,7 +68,7 @@ void Strip<Dim>::finish_band(int l, Side side) {
   const auto core_side = in_core<Dim>(side);
   const Band& band = mine.band(core_side);
   if (!is_remote(l, side)) {
-    if (!fresh_) mine.unpack_halo(core_side, inbox(l, side));
+    if (!post(l).is_fresh) mine.unpack_halo(core_side, inbox(l, side));
     return mine.finish_band(core_side);
   }
   if (band.returns && side == Side::Right) {
@@ -120,17 +120,20 @@ void Strip<Dim>::send_band(int l, Side side) {
     return send_halo(side, mine.halo_bytes(core_side),
                      [&](std::span<std::byte> message) { mine.pack_halo(core_side, message); });
   }
-  auto& outbox = posts_[static_cast<std::size_t>(l)]
-                     .halo[static_cast<std::size_t>(1 - parity_)][index_of(side)];
+  auto& outbox = post(l).halo[static_cast<std::size_t>(1 - post(l).parity)][index_of(side)];
   outbox.resize(mine.halo_bytes(core_side));
   mine.pack_halo(core_side, outbox);
 }
 
 template <int Dim>
+void Strip<Dim>::end_step(int l) {
+  post(l).parity = 1 - post(l).parity;
+  post(l).is_fresh = false;
+}
+
+template <int Dim>
 void Strip<Dim>::end_step() {
-  parity_ = 1 - parity_;
   halo_step_ = step + 1;
-  fresh_ = false;
   for (const Side side : kSides) awaited_[index_of(side)] = neighbours_.has(side);
 }
 
@@ -148,7 +151,7 @@ std::string Strip<Dim>::name_of_halo(Side side) const {
 
 template <int Dim>
 void Strip<Dim>::complete_halo() {
-  if (fresh_) return;
+  if (post(0).is_fresh) return;
   for (int l = 0; l < num_lanes(); ++l) {
     for (const Side side : kSides) {
       if (has_neighbour(l, side) && !is_remote(l, side))
@@ -163,7 +166,7 @@ void Strip<Dim>::complete_halo() {
     exchange_->release(side);
     awaited_[index_of(side)] = false;
   }
-  fresh_ = true;
+  set_fresh();
 }
 
 template <int Dim>

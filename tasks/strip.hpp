@@ -74,6 +74,10 @@ class Strip {
   [[nodiscard]] bool is_remote(int l, Side side) const {
     return is_outer(l, side) && neighbours_.has(side);
   }
+  /// The lane of this rank beside this one. Around the end of a periodic axis it may be itself.
+  [[nodiscard]] int lane_beside(int l, Side side) const {
+    return (l + (side == Side::Left ? num_lanes() - 1 : 1)) % num_lanes();
+  }
   [[nodiscard]] bool scheme_returns() const { return returns_; }
   /// Whether this band must wait for a message of another rank in this step.
   [[nodiscard]] bool awaits(Side side) const { return awaited_[index_of(side)]; }
@@ -86,7 +90,9 @@ class Strip {
   void finish_band(int l, Side side);
   /// Publishes the finished band for the next step. @pre finish_band
   void send_band(int l, Side side);
-  /// After all bands: the next step's messages are expected.
+  /// After all bands of a lane. Lanes of a rank without neighbours may be in different steps.
+  void end_step(int l);
+  /// After all bands of all lanes: the next step's messages are expected.
   void end_step();
   /// Waits for the messages of this step and unpacks them, without computing; for measurements
   /// between steps.
@@ -119,11 +125,18 @@ class Strip {
   using Bytes = std::vector<std::byte>;
   struct Post {  ///< messages of one lane
     std::array<Bytes, 2> out;
-    std::array<std::array<Bytes, 2>, 2> halo;  ///< by parity and side
+    std::array<std::array<Bytes, 2>, 2> halo;  ///< by parity of the step that needs it, and side
+    int parity = 0;                            ///< of the step that the lane is in
+    bool is_fresh = true;  ///< ghosts are up to date: nothing to unpack in this step
   };
 
   static constexpr int kMinSlabs = 2;  ///< of a lane: a particle lies in at most one band
 
+  [[nodiscard]] Post& post(int l) { return posts_[static_cast<std::size_t>(l)]; }
+  [[nodiscard]] const Post& post(int l) const { return posts_[static_cast<std::size_t>(l)]; }
+  void set_fresh() {
+    for (Post& p : posts_) p.is_fresh = true;
+  }
   void place_bands();
   /// Before there are threads.
   ForEachLane one_by_one() const {
@@ -138,10 +151,6 @@ class Strip {
   void wait_bulk(const char* what);
   void wait_halo(Side side);
   [[nodiscard]] bool has_neighbour(int l, Side side) const;
-  /// The lane of this rank beside this one. Around the end of a periodic axis it may be itself.
-  [[nodiscard]] int lane_beside(int l, Side side) const {
-    return (l + (side == Side::Left ? num_lanes() - 1 : 1)) % num_lanes();
-  }
   /// What the lane beside wrote of its band, for the step at hand. @pre has_neighbour, !is_remote
   [[nodiscard]] const Bytes& inbox(int l, Side side) const;
   /// Sends the outermost posts. bulk() gives what came, from a rank or a lane; empty: from nobody.
@@ -170,9 +179,7 @@ class Strip {
   std::vector<int> cuts_;
   std::array<bool, 2> shares_clock_{};  ///< with the neighbour, on whose node this rank is
   std::array<bool, 2> awaited_{};       ///< a message of another rank is due in this step
-  bool fresh_ = true;                   ///< ghosts are up to date: nothing to unpack in this step
-  int parity_ = 0;
-  std::int64_t halo_step_ = 0;  ///< that the halo on its way is for
+  std::int64_t halo_step_ = 0;          ///< that the halo on its way is for
   std::int64_t send_ns_ = 0;
   RebuildWaits waits_;
   std::int64_t bulk_begin_ = 0;

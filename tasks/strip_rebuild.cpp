@@ -145,7 +145,7 @@ void Strip<Dim>::exchange_ghosts(const ForEachLane& parallel) {
     lane(l).cut_chunks(chunk_pairs);
   });
   reserve_posts();
-  fresh_ = true;
+  set_fresh();
   awaited_ = {};
   // In the published scheme results come back even where ghosts are fresh.
   if (returns_) awaited_[index_of(Side::Right)] = neighbours_.has(Side::Right);

@@ -39,8 +39,10 @@ class Trace {
         std::size_t num_events);
 
   // By any worker, in a step.
-  void slice(Slice name, std::int32_t detail, std::int64_t begin, std::int64_t end) {
-    put({begin, end, step_, detail, Kind::Slice, static_cast<std::uint8_t>(name)});
+  /// @param ahead  steps after the one that was begun
+  void slice(Slice name, std::int32_t detail, std::int64_t begin, std::int64_t end,
+             std::int64_t ahead = 0) {
+    put({begin, end, step_ + ahead, detail, Kind::Slice, static_cast<std::uint8_t>(name)});
   }
   /// A halo message that the receiver needs in `step`; at an instant inside a slice of this worker.
   void sent(Side side, std::int64_t step, std::int64_t at) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <exception>
 
+#include <barchan/comm/call_watch.hpp>
 #include <barchan/comm/exchanges/all.hpp>
 #include <barchan/comm/mpi_error.hpp>
 #include <barchan/comm/mpi_session.hpp>
@@ -38,7 +39,7 @@ class Fence final : public SlotExchange {
     num_posted_ = {};
     for (Window& window : windows_) {
       window = Window(communicator(), layout_.total());
-      check(MPI_Win_fence(MPI_MODE_NOPRECEDE, window.handle()), "MPI_Win_fence");
+      close(window, MPI_MODE_NOPRECEDE);
     }
     for (const Lane lane : {Lane::Halo, Lane::Bulk}) {
       for (const Side side : {Side::Left, Side::Right}) {
@@ -50,7 +51,7 @@ class Fence final : public SlotExchange {
   void retire() override {
     for (Window& window : windows_) {
       if (window.handle() == MPI_WIN_NULL) continue;
-      check(MPI_Win_fence(MPI_MODE_NOSUCCEED, window.handle()), "MPI_Win_fence");
+      close(window, MPI_MODE_NOSUCCEED);
       window.free();
     }
   }
@@ -68,7 +69,7 @@ class Fence final : public SlotExchange {
     std::uint64_t& num_fences = num_fences_[static_cast<std::size_t>(key.lane)];
     if (num_fences < key.number) {
       if (!has_sent_both(key)) return nullptr;
-      check(MPI_Win_fence(0, window(key).handle()), "MPI_Win_fence");
+      close(window(key), 0);
       ++num_fences;
     }
     return window(key).base() + layout_.slot(key);
@@ -83,6 +84,9 @@ class Fence final : public SlotExchange {
   std::string transport() const override { return "one-sided " + windows_[0].component(); }
 
  private:
+  static void close(const Window& window, int assertion) {
+    check_watched("MPI_Win_fence", [&] { return MPI_Win_fence(assertion, window.handle()); });
+  }
   [[nodiscard]] bool has_sent_both(const MessageKey& key) const {
     return std::ranges::all_of(std::array{Side::Left, Side::Right}, [&](Side side) {
       return !neighbours().has(side) || num_posted_[index({key.lane, side, 0})] >= key.number;

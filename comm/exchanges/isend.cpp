@@ -1,5 +1,6 @@
 #include <exception>
 
+#include <barchan/comm/call_watch.hpp>
 #include <barchan/comm/exchanges/all.hpp>
 #include <barchan/comm/mpi_error.hpp>
 #include <barchan/comm/mpi_session.hpp>
@@ -72,7 +73,7 @@ class Isend final : public TwoSidedExchange {
       if (slot.request == MPI_REQUEST_NULL) continue;
       if (slot.is_posted) {
         check(MPI_Cancel(&slot.request), "MPI_Cancel");
-        check(MPI_Wait(&slot.request, MPI_STATUS_IGNORE), "MPI_Wait");
+        check_watched("MPI_Wait", [&] { return MPI_Wait(&slot.request, MPI_STATUS_IGNORE); });
         slot.is_posted = false;
       }
       check(MPI_Request_free(&slot.request), "MPI_Request_free");

@@ -1,5 +1,6 @@
 #include <exception>
 
+#include <barchan/comm/call_watch.hpp>
 #include <barchan/comm/exchanges/all.hpp>
 #include <barchan/comm/mpi_error.hpp>
 #include <barchan/comm/mpi_session.hpp>
@@ -51,10 +52,10 @@ class Pscw final : public SlotExchange {
       if (slot.handle() == MPI_WIN_NULL) return;
       const Side reader = opposite(key.side);
       if (neighbours().has(reader)) {
-        check(MPI_Win_start(groups_[index_of(reader)], 0, slot.handle()), "MPI_Win_start");
-        check(MPI_Win_complete(slot.handle()), "MPI_Win_complete");
+        start(slot, reader);
+        complete(slot);
       }
-      if (neighbours().has(key.side)) check(MPI_Win_wait(slot.handle()), "MPI_Win_wait");
+      if (neighbours().has(key.side)) wait(slot);
       slot.free();
     });
     num_posted_ = num_recycled_ = {};
@@ -65,9 +66,9 @@ class Pscw final : public SlotExchange {
   void post(const MessageKey& key, const MessageHeader& header) override {
     write_header(header, outbox(key));
     const Window& slot = window({key.lane, opposite(key.side), key.number});
-    check(MPI_Win_start(groups_[index_of(key.side)], 0, slot.handle()), "MPI_Win_start");
+    start(slot, key.side);
     slot.put({outbox(key), header_bytes + header.bytes}, neighbours().rank(key.side), 0);
-    check(MPI_Win_complete(slot.handle()), "MPI_Win_complete");
+    complete(slot);
     ++num_posted_[index(key)];
   }
 
@@ -96,6 +97,17 @@ class Pscw final : public SlotExchange {
     }
   }
 
+  void start(const Window& slot, Side target) const {
+    check_watched("MPI_Win_start",
+                  [&] { return MPI_Win_start(groups_[index_of(target)], 0, slot.handle()); });
+  }
+  static void complete(const Window& slot) {
+    check_watched("MPI_Win_complete", [&] { return MPI_Win_complete(slot.handle()); });
+  }
+  static void wait(const Window& slot) {
+    check_watched("MPI_Win_wait", [&] { return MPI_Win_wait(slot.handle()); });
+  }
+
   /// A run may end with a message on its way from either side, whose access is then not yet over.
   void take_in_the_last() {
     for (const Lane lane : {Lane::Halo, Lane::Bulk}) {
@@ -103,7 +115,7 @@ class Pscw final : public SlotExchange {
         const auto at = index({lane, side, 0});
         if (num_posted_[at] == num_recycled_[at]) continue;
         const MessageKey key{lane, side, num_recycled_[at] + 1};
-        if (!is_tested_[at]) check(MPI_Win_wait(window(key).handle()), "MPI_Win_wait");
+        if (!is_tested_[at]) wait(window(key));
         recycle(key);
       }
     }

@@ -2,12 +2,14 @@
 says, and no rank is left waiting."""
 import json
 import os
+import random
 import signal
 import subprocess
+import time
 
 from _faults import LONG, begin, digest_of, ended, expect_failure, has_rows, log_of, wait_for
 from _helper import COMMAND, edited, expect, finish, fresh, messages, run, timed, write
-from processes import children_of, is_there, rank_of
+from processes import children_of, is_there, name_of, rank_of
 
 MORE_MEMORY = 64 << 20  # than a small run takes; not enough for a million particles
 
@@ -57,9 +59,28 @@ def check_hang(rows_every):
     expect(done.returncode == 1, f"{name}: status {done.returncode}: {done.stderr}")
     expect(any("in vain" in line for line in said), f"{name}: {done.stderr}")
     if rows_every > 1:
-        expect(any("rank 1: " in line and ("rank 2 (right)" in line or "missing: rank 2" in line) for line in said),
+        expect(any("rank 1: " in line and ("rank 2 (right)" in line or "missing: rank 2" in line or ": MPI_" in line)
+                   for line in said),
                f"{name}: rank 1 does not say for whom it waits: {said}")
     expect(not any("rank 2:" in line for line in said), f"{name}: the rank that hangs speaks: {said}")
+    wait_for(lambda: not is_there(stopped), f"{name}: the stopped rank to go")
+
+
+def check_hang_at_start():
+    """A rank that hangs while others set up windows and communicators, in calls that cannot be asked how they get on."""
+    name, out = "hang at the start", "hang.out"
+    os.environ["BARCHAN_WAIT_LIMIT"] = "3"
+    fresh(out)
+    process = begin("run", "case.toml", "--out", out, *LONG, "--exchange", "put-flag", "--threads", "1", ranks=3)
+    del os.environ["BARCHAN_WAIT_LIMIT"]
+    wait_for(lambda: any(rank_of(pid) == 2 and name_of(pid) == "barchan" for pid in children_of(process.pid)), f"{name}: rank 2")
+    stopped = next(pid for pid in children_of(process.pid) if rank_of(pid) == 2)
+    time.sleep(random.uniform(0.0, 0.3))
+    os.kill(stopped, signal.SIGSTOP)
+    done = ended(process)
+    said = messages(done)
+    expect(done.returncode == 1, f"{name}: status {done.returncode}: {done.stderr}")
+    expect(any("in vain" in line for line in said), f"{name}: {done.stderr}")
     wait_for(lambda: not is_there(stopped), f"{name}: the stopped rank to go")
 
 
@@ -111,6 +132,7 @@ def check_deleted(out):
 
 timed(check_outside)
 timed(check_wild)
+timed(check_hang_at_start)
 timed(check_hang, 1)
 timed(check_hang, 5000)
 timed(check_memory)

@@ -103,5 +103,36 @@ TEST(Culprit, OneThatGoesWildIsNamedInThatStepAlikeOnAnyNumberOfThreads) {
   }
 }
 
+/// Where walls stand, lanes go on by themselves for some steps: the others may be ahead of the one
+/// that stops.
+TEST(Culprit, OneThatGoesWildInALaneThatIsBehindIsNamedInThatStep) {
+  const Scenario s = column_collapse();
+  int in_a_later_step = 0;
+  for (const double force : {3e2, 1e3, 3e3, 1e4, 3e4, 1e5}) {
+    for (const std::int64_t id : {3, 40}) {
+      const auto error = [&](int threads) -> std::string {
+        RunOptions options = with_threads(threads);
+        options.max_delay_seconds = threads == 1 ? 0.0 : 1e-4;
+        Simulation sim(s.model, s.set, MPI_COMM_SELF, options);
+        sim.run(100);
+        sim.apply_forces(
+            [&](const OwnedParticle& p) { return Vec3(p.id == id ? force : 0.0, 0.0, 0.0); });
+        try {
+          sim.run(200);
+        } catch (const StepError& e) {
+          return e.what();
+        } catch (const AgreedError& e) {
+          return e.what();
+        }
+        return {};
+      };
+      const std::string expected = error(1);
+      for (const int threads : {2, 3, 4}) EXPECT_EQ(error(threads), expected);
+      if (expected.find("in step ") == 0 && expected.find("in step 100") != 0) ++in_a_later_step;
+    }
+  }
+  EXPECT_GT(in_a_later_step, 0);
+}
+
 }  // namespace
 }  // namespace barchan::test

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <chrono>
+
+#include <barchan/comm/mpi_error.hpp>
+
+namespace barchan {
+
+/// As long as it lives, its thread is in an MPI call that waits for other ranks and cannot be asked
+/// how it is getting on. When that takes longer than wait_limit(), a thread that watches says which
+/// call it is and ends the process with status 1, and the launcher ends the other ranks: nobody can
+/// come back out of such a call. Costs two uncontended locks; allocates nothing. From any thread.
+class CallWatch {
+ public:
+  /// @param call      a literal
+  /// @param patience  in wait limits
+  explicit CallWatch(const char* call, double patience = 1.0) noexcept;
+  ~CallWatch();
+  CallWatch(const CallWatch&) = delete;
+  CallWatch& operator=(const CallWatch&) = delete;
+
+ private:
+  friend class CallWatcher;
+  const char* call_;
+  double patience_;
+  int rank_ = -1;  ///< in MPI_COMM_WORLD; before MPI_Init: not known
+  std::chrono::steady_clock::time_point begin_;
+  CallWatch *before_ = nullptr, *after_ = nullptr;
+};
+
+/// check(), for a call that waits for other ranks. Errors: MpiError.
+template <class Call>
+void check_watched(const char* name, Call&& call) {
+  int code = MPI_SUCCESS;
+  {
+    const CallWatch watch(name);
+    code = call();
+  }
+  check(code, name);
+}
+
+}  // namespace barchan
