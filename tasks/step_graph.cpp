@@ -179,8 +179,9 @@ void StepGraph<Dim>::run_chunk(int l, int chunk) {
   const std::int64_t end = now_ns();
   nodes.chunk_ns += end - begin;
   if (trace_ != nullptr) trace_->slice(Trace::Slice::Chunk, l, begin, end, nodes.step);
-  try_poll(end);
-  if (chunk + 1 < lane.num_chunks()) {
+  const bool is_last_chunk = chunk + 1 == lane.num_chunks();
+  if (is_last_chunk || is_poll_of_use()) try_poll(end);
+  if (!is_last_chunk) {
     put(*nodes.chunk, chunk + 1);
     return;
   }

@@ -51,7 +51,8 @@ struct StepTimes {
 ///   the chunks of step k+1
 ///
 /// A chunk that ends polls the exchange under a try-lock; when all is in, it still lets the
-/// exchange advance, for neighbours who wait for the rest of what this rank sent. When no chunk is
+/// exchange advance, for neighbours who wait for the rest of what this rank sent. An exchange whose
+/// messages come by themselves is left alone while every lane has chunks to do. When no chunk is
 /// left, one drain node polls until all is in; a lone worker leaves it for the left band once that
 /// can be done. With Progress::Thread a thread polls all the time, and chunks only look at what it
 /// found. With Schedule::Sequential the halo is waited for before the first chunk: nothing is
@@ -98,6 +99,7 @@ class StepGraph {
   void run_chunk(int lane, int chunk);
   void run_band(int lane, Side side);
   void end_step(int lane);
+  [[nodiscard]] bool is_poll_of_use() const;
   void try_poll(std::int64_t begin);
   bool poll_sides();
   void drive();

@@ -78,6 +78,13 @@ void StepGraph<Dim>::drive() {
   }
 }
 
+/// In the midst of a lane's chunks: somebody waits, or messages need it to come.
+template <int Dim>
+bool StepGraph<Dim>::is_poll_of_use() const {
+  return lanes_left_ < strip_.num_lanes() ||
+         (strip_.exchange() != nullptr && strip_.exchange()->needs_progress());
+}
+
 template <int Dim>
 void StepGraph<Dim>::try_poll(std::int64_t begin) {
   const bool all_is_in = arrived_[0] && arrived_[1];

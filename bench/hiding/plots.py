@@ -72,7 +72,7 @@ def look(names, program, schedule):
 def step_times(groups, size, particles, names):
     lines = []
     for (of_size, program, schedule), by_delay in groups.items():
-        points = sorted((d, tables.median_of(ms, "step_us")) for d, ms in by_delay.items() if d is not None)
+        points = sorted((d, tables.median_of(ms, "step_us")) for d, ms in by_delay.items() if d not in (None, tables.EVEN))
         if of_size == size and points:
             lines.append((tables.name_of(program, schedule), points, *look(names, program, schedule)))
     if not lines:

@@ -5,6 +5,7 @@ import re
 import shlex
 import subprocess
 import sys
+from dataclasses import dataclass
 
 import cases
 import launch
@@ -38,12 +39,25 @@ def packings(given, work, barchan):
     return data
 
 
-def starter(options, delay, program):
+@dataclass(frozen=True)
+class Network:
+    delay: int | None  # one way [µs]; None: a real one
+    has_even_price: bool = False
+
+    @property
+    def label(self):
+        return "" if self.delay is None else f", {self.delay} µs{' at an even price' if self.has_even_price else ''}"
+
+    def names(self):
+        return {"delay_us": self.delay, **({"even_price": True} if self.has_even_price else {})}
+
+
+def starter(options, network, program):
     """The words before a program's own, by which it runs on two hosts."""
     if options.launcher:
         return shlex.split(options.launcher)
-    words = [NETLAB, "--hosts", "2", "--delay", f"{delay}us", "--rate", options.rate, "--mtu", options.mtu]
-    if options.even_price:
+    words = [NETLAB, "--hosts", "2", "--delay", f"{network.delay}us", "--rate", options.rate, "--mtu", options.mtu]
+    if network.has_even_price:
         words.append("--even-price")
     if options.realtime:
         words.append("--realtime")

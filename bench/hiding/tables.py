@@ -2,12 +2,17 @@
 import report
 
 
+EVEN = "0 µs, even"
+
+
 def group(found):
-    """{(size, program, schedule): {delay: [measurement, …]}}, in the order of the runs."""
+    """{(size, program, schedule): {delay: [measurement, …]}}, in the order of the runs. Those at 0 µs at an even price have the
+    delay EVEN."""
     groups = {}
     for m in found:
         if "step_us" in m:
-            groups.setdefault((m["size"], m["program"], m["schedule"]), {}).setdefault(m["delay_us"], []).append(m)
+            delay = EVEN if m.get("even_price") else m["delay_us"]
+            groups.setdefault((m["size"], m["program"], m["schedule"]), {}).setdefault(delay, []).append(m)
     return groups
 
 
@@ -18,7 +23,7 @@ def median_of(measurements, key):
 
 def slope(by_delay):
     """µs of step per µs of delay: least squares over all delays."""
-    points = [(delay, median_of(ms, "step_us")) for delay, ms in by_delay.items() if delay is not None]
+    points = [(delay, median_of(ms, "step_us")) for delay, ms in by_delay.items() if delay not in (None, EVEN)]
     if len(points) < 2:
         return None
     mean_x = sum(x for x, _ in points) / len(points)
@@ -43,16 +48,21 @@ def percent(share):
 
 
 def covered(by_delay):
-    """The longest delay that the work of a step is twice as long as: (delay, step there over step at 0 µs, the slope up to
-    there); None where there is none. Ratios are taken within a repetition."""
+    """The longest delay that the work of a step is twice as long as: [delay, then for 0 µs and for 0 µs at an even price: step
+    there over step here, the slope up to there]; None where there is none. Ratios are taken within a repetition."""
     work = median_of(by_delay.get(0, []), "work_us")
-    delays = [d for d in by_delay if d and work and work >= 2 * d]
+    delays = [d for d in by_delay if d not in (0, None, EVEN) and work and work >= 2 * d]
     if not delays:
         return None
-    pairs = list(zip(by_delay[0], by_delay[max(delays)]))
-    ratio = report.median([there["step_us"] / here["step_us"] for here, there in pairs])
-    rise = report.median([there["step_us"] - here["step_us"] for here, there in pairs])
-    return max(delays), ratio, rise / max(delays)
+    cells = [max(delays)]
+    for here in (0, EVEN):
+        pairs = list(zip(by_delay.get(here, []), by_delay[max(delays)]))
+        if not pairs:
+            cells += [None, None]
+            continue
+        cells.append(report.median([m["step_us"] / m0["step_us"] for m0, m in pairs]))
+        cells.append(report.median([m["step_us"] - m0["step_us"] for m0, m in pairs]) / max(delays))
+    return cells
 
 
 def covered_table(groups, size):
@@ -61,7 +71,9 @@ def covered_table(groups, size):
     if not rows:
         return ""
     return ("\nThe longest delay here that is at most half the work of a step, the step there over that at 0 µs, and the slope up "
-            "to there.\n\n" + report.table(["exchange, schedule", "delay [µs]", "step over 0 µs", "slope"], rows))
+            "to there. Even: at 0 µs the lab's forwarder was made to take as much of a core as at any other delay, so that what is "
+            "left is the delay's.\n\n"
+            + report.table(["exchange, schedule", "delay [µs]", "step over 0 µs", "slope", "step over 0 µs, even", "slope, even"], rows))
 
 
 def chosen(by_delay):
@@ -71,8 +83,8 @@ def chosen(by_delay):
 
 def markdown(found):
     groups = group(found)
-    delays = sorted(dict.fromkeys(m["delay_us"] for m in found), key=lambda d: d or 0)
-    heads = ["here" if d is None else f"{d:,} µs" for d in delays]
+    delays = sorted({d for by_delay in groups.values() for d in by_delay}, key=lambda d: 0.5 if d == EVEN else d or 0)
+    heads = ["here" if d is None else d if d == EVEN else f"{d:,} µs" for d in delays]
     text = ""
     for size in dict.fromkeys(m["size"] for m in found):
         particles = next(m["particles"] for m in found if m["size"] == size)
