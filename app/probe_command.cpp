@@ -32,11 +32,14 @@ std::string links_of(const ProbeReport& r) {
                      r.num_links - r.num_on_node);
 }
 
-void print_table(const ProbeReport& r, int ranks) {
+void print_head(const ProbeReport& r, int ranks) {
   Rows head{{"MPI", r.mpi_library + ", thread level " + r.thread_level},
             {"window", r.window.empty() ? "none can be made here" : r.window},
             {"links", fmt::format("{} between {} ranks, {}", r.num_links, ranks, links_of(r))}};
   std::fputs(table(head, 2).c_str(), stdout);
+}
+
+void print_rows(const ProbeReport& r) {
   Rows rows{{"exchange", "message", "half trip [µs]", "both ways [µs]", "CPU [µs]", "overlap",
              "availability"}};
   for (const ProbeRow& row : r.plain_put) {
@@ -51,9 +54,20 @@ void print_table(const ProbeReport& r, int ranks) {
   }
   std::fputs("\n", stdout);
   std::fputs(table(rows).c_str(), stdout);
-  for (const ProbeObstacle& o : r.obstacles) {
-    std::fprintf(stdout, "%s: %s\n", o.exchange.c_str(), o.reason.c_str());
+}
+
+void print_obstacles(const ProbeReport& r) {
+  if (!r.obstacles.empty()) std::fputs("\n", stdout);
+  for (const std::string& line : lines_of(r.obstacles)) {
+    std::fprintf(stdout, "  not here: %s\n", line.c_str());
   }
+}
+
+/// @param is_answer  whether what does not work is a part of the answer, and not of a refusal
+void print_table(const ProbeReport& r, int ranks, bool is_answer) {
+  print_head(r, ranks);
+  if (!r.rows.empty()) print_rows(r);
+  if (is_answer) print_obstacles(r);
   std::fflush(stdout);
 }
 
@@ -77,7 +91,7 @@ void print_json(const ProbeReport& r, int ranks) {
         {{"bytes", row.bytes}, {"half_round_trip_seconds", row.cost.half_round_trip}});
   }
   for (const ProbeRow& row : r.rows) json["exchanges"].push_back(row_of(row));
-  for (const ProbeObstacle& o : r.obstacles) {
+  for (const ExchangeObstacle& o : r.obstacles) {
     json["obstacles"].push_back({{"exchange", o.exchange}, {"reason", o.reason}});
   }
   std::puts(json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
@@ -85,24 +99,28 @@ void print_json(const ProbeReport& r, int ranks) {
 }
 
 /// What does not work among all is a line of the answer; what was asked for by name is a refusal.
-void require_asked(const ProbeReport& r, const ProbeOptions& options) {
-  if (r.obstacles.empty() || (options.exchanges.empty() && !r.rows.empty())) return;
-  const ProbeObstacle& first = r.obstacles.front();
-  throw InputError(fmt::format("exchange '{}' cannot be measured here", first.exchange),
-                   first.reason);
+bool is_refused(const ProbeReport& r, const ProbeOptions& options) {
+  return !r.obstacles.empty() && (!options.exchanges.empty() || r.rows.empty());
+}
+
+[[noreturn]] void refuse(const ProbeReport& r) {
+  std::string text = "not every exchange asked for works between these ranks";
+  for (const std::string& line : lines_of(r.obstacles)) text += "\n  not here: " + line;
+  throw InputError(text, "");
 }
 
 }  // namespace
 
 void probe(const Communicator& world, const ProbeArguments& arguments) {
   const ProbeReport report = probe_exchanges(world, arguments.options);
+  const bool refused = is_refused(report, arguments.options);
   if (world.is_root()) {
     if (arguments.json)
       print_json(report, world.size());
     else
-      print_table(report, world.size());
+      print_table(report, world.size(), !refused);
   }
-  require_asked(report, arguments.options);
+  if (refused) refuse(report);
 }
 
 }  // namespace barchan::app

@@ -1,13 +1,12 @@
 #include <barchan/comm/exchange.hpp>
 
-#include <algorithm>
 #include <array>
-#include <utility>
 #include <vector>
 
 #include <barchan/comm/delayed_exchange.hpp>
 #include <barchan/comm/exchanges/all.hpp>
 #include <barchan/comm/mixed_exchange.hpp>
+#include <barchan/comm/obstacles.hpp>
 #include <barchan/core/deck/nearest.hpp>
 #include <barchan/core/error.hpp>
 
@@ -84,22 +83,17 @@ void check_exchange_name(std::string_view name) {
 
 std::string exchanges_here(const Communicator& communicator, Neighbours neighbours) {
   std::string working;
-  std::vector<std::pair<std::string, std::string>> others;  // reason, names
+  std::vector<ExchangeObstacle> others;
   for (const Entry& entry : entries) {
     try {
       (void)make_plain(entry.name, communicator, neighbours, {});
       working += (working.empty() ? "" : ", ") + std::string(entry.name);
     } catch (const InputError& e) {
-      const auto same =
-          std::ranges::find_if(others, [&e](const auto& other) { return other.first == e.what(); });
-      if (same == others.end())
-        others.emplace_back(e.what(), entry.name);
-      else
-        same->second += ", " + std::string(entry.name);
+      others.push_back({std::string(entry.name), e.what()});
     }
   }
   std::string text = working + "; or two of them as A+B, A within a node and B between nodes";
-  for (const auto& [reason, names] : others) text += "\n  not here: " + names + ": " + reason;
+  for (const std::string& line : lines_of(others)) text += "\n  not here: " + line;
   return text;
 }
 

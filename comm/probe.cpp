@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <barchan/comm/auto_exchange.hpp>
+#include <barchan/comm/mixed_exchange.hpp>
 #include <barchan/comm/mpi_error.hpp>
 #include <barchan/comm/mpi_session.hpp>
 #include <barchan/comm/plain_put.hpp>
@@ -15,6 +17,7 @@ void probe_sizes(const Communicator& communicator, Neighbours neighbours, const 
                  const ProbeOptions& options, ProbeReport& report) {
   ExchangeOptions first;
   first.halo_bytes = *std::ranges::max_element(options.sizes);
+  first.ranks_per_node = options.ranks_per_node;
   const auto exchange = make_exchange(name, communicator, neighbours, first);
   for (const std::size_t bytes : options.sizes) {
     ExchangeProbe probe(communicator, neighbours, *exchange, bytes, options.budget_seconds);
@@ -41,6 +44,14 @@ void check_sizes(const std::vector<std::size_t>& sizes) {
       "use a smaller --bytes, at most " + std::to_string(most));
 }
 
+std::vector<std::string> all_names(const Links& links) {
+  std::vector<std::string> names = exchange_names();
+  for (const std::string& name : auto_candidates(links)) {
+    if (ExchangeMix::parse(name)) names.push_back(name);
+  }
+  return names;
+}
+
 std::string window_component(const Communicator& communicator) {
   try {
     return Window(communicator, 64).component();
@@ -62,10 +73,10 @@ ProbeReport probe_exchanges(const Communicator& communicator, const ProbeOptions
   report.mpi_library = mpi_library_version();
   report.thread_level = mpi_thread_level();
   report.window = window_component(communicator);
-  const Links links = count_links(communicator, neighbours);
+  const Links links = count_links(communicator, neighbours, options.ranks_per_node);
   report.num_links = links.all;
   report.num_on_node = links.on_node;
-  const auto names = options.exchanges.empty() ? exchange_names() : options.exchanges;
+  const auto names = options.exchanges.empty() ? all_names(links) : options.exchanges;
   for (const std::string& name : names) check_exchange_name(name);  // unknown ones first
   if (!report.window.empty()) probe_plain_put(communicator, options, report);
   for (const std::string& name : names) {

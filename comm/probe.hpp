@@ -7,6 +7,7 @@
 
 #include <barchan/comm/exchange.hpp>
 #include <barchan/comm/links.hpp>
+#include <barchan/comm/obstacles.hpp>
 
 namespace barchan {
 
@@ -81,12 +82,6 @@ struct ProbeRow {
   ExchangeCost cost;
 };
 
-/// An exchange that does not work here, and why.
-struct ProbeObstacle {
-  std::string exchange;
-  std::string reason;  ///< with the remedy
-};
-
 struct ProbeReport {
   std::string mpi_library, thread_level;
   std::string window;          ///< component behind MPI_Win_allocate; empty: no window can be made
@@ -94,13 +89,15 @@ struct ProbeReport {
   int num_on_node = 0;         ///< of these, with both on one node
   std::vector<ProbeRow> rows;  ///< by exchange, then size
   std::vector<ProbeRow> plain_put;  ///< plain_put.hpp: half_round_trip only; empty without window
-  std::vector<ProbeObstacle> obstacles;
+  std::vector<ExchangeObstacle> obstacles;
 };
 
 struct ProbeOptions {
-  std::vector<std::string> exchanges;  ///< empty: all
+  /// Empty: all, with the mixes that a run would try where links are of both kinds.
+  std::vector<std::string> exchanges;
   std::vector<std::size_t> sizes = {64, 256, 1 << 10, 1 << 12, 1 << 14, 1 << 16, 1 << 18, 1 << 20};
   double budget_seconds = 0.05;  ///< for each of the five measurements of a row
+  int ranks_per_node = 0;  ///< tests: so many ranks in a row pass for a node; 0: the real nodes
 };
 
 /// Measures all exchanges between neighbouring ranks. Collective; the same on every rank.

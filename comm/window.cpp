@@ -21,13 +21,15 @@ MPI_Info window_hints() {
 
 [[noreturn]] void refuse(const std::string& reason, Window::Memory memory) {
   if (memory == Window::Memory::Shared) {
-    throw InputError("this MPI cannot make a window of shared memory: " + reason,
-                     "with Open MPI allow its component osc/sm; or run with `--exchange put-flag`");
+    throw InputError(
+        "this MPI cannot make a window of shared memory: " + reason,
+        "with Open MPI allow its component osc/sm, as `--mca osc sm,pt2pt` does; or run "
+        "with `--exchange put-inband`, or `isend`, which needs no window");
   }
   throw InputError(
       "this MPI cannot make a window for one-sided communication between these ranks: " + reason,
-      "with Open MPI 4 over TCP give mpirun `--mca osc pt2pt` or `--mca osc ucx`; or run with "
-      "`--exchange isend` or `--exchange sendrecv`, which need no window");
+      "with Open MPI 4 over TCP give mpirun `--mca osc sm,pt2pt` or `--mca osc sm,ucx`; or run "
+      "with `--exchange isend` or `--exchange sendrecv`, which need no window");
 }
 
 }  // namespace

@@ -26,7 +26,8 @@ class SharedMemory final : public SlotExchange {
   void allocate(SlotCapacity capacity) override {
     if (!communicator().all_of(communicator().node_size() == communicator().size())) {
       throw InputError("exchange 'shared' needs all ranks on one node",
-                       "use --exchange put-flag, or isend where windows do not work");
+                       "use `--exchange shared+put-inband`, which shares memory within each node, "
+                       "or `shared+isend` where no window can be made between nodes");
     }
     layout_ = SlotLayout{capacity};
     window_ = Window(communicator(), layout_.total(), Window::Memory::Shared);

@@ -1,5 +1,6 @@
 """What the command tells about communication: probe, trace, step graph, replay, the choice of an exchange."""
 import json
+import os
 
 from _helper import DECK, expect, finish, fresh, messages, run, write
 
@@ -23,6 +24,28 @@ def check_probe():
     expect(done.returncode == 2 and len(messages(done)) == 1, f"probe of messages that no call moves: {done}")
     done = run("probe", "--exchange", "put-flog", ranks=2)
     expect(done.returncode == 2 and "put-flag" in done.stderr, f"probe of an unknown exchange: {done}")
+
+
+def check_obstacles():
+    """Without any component for windows, where the library is Open MPI; another one takes no notice."""
+    os.environ["OMPI_MCA_osc"] = "^sm,rdma,pt2pt,ucx"
+    small = ("--bytes", "64", "--seconds", "0.001")
+    done = run("probe", *small, ranks=2)
+    expect(done.returncode == 0, f"probe without windows: {done}")
+    told = [line.strip() for line in done.stdout.splitlines() if "not here: " in line]
+    done = run("probe", *small, "--json", ranks=2)
+    obstacles = {o["exchange"]: o["reason"] for o in json.loads(done.stdout)["obstacles"]}
+    expect(done.returncode == 0 and len(told) == len(set(obstacles.values())), f"probe tells {told} of {obstacles}")
+    for name, reason in obstacles.items():
+        lines = [line for line in told if name in line.split(": ")[1].split(", ") and line.endswith(reason)]
+        expect(len(lines) == 1 and "--exchange" in reason, f"why {name} does not work: {told}")
+    if "put-flag" in obstacles:
+        expect({"put-inband", "get", "pscw", "fence"} <= set(obstacles), f"work without windows: {obstacles}")
+        done = run("probe", *small, "--exchange", "get,isend,put-flag", ranks=2)
+        expect(done.returncode == 2 and len(messages(done)) == 1, f"probe of exchanges that do not work: {done}")
+        expect("get, put-flag: " + obstacles["get"] in done.stderr, f"what does not work: {done.stderr}")
+        expect("isend" in done.stdout and "not here" not in done.stdout, f"what does: {done.stdout}")
+    del os.environ["OMPI_MCA_osc"]
 
 
 def check_trace_and_graph():
@@ -65,6 +88,7 @@ def check_choice():
 
 write("case.toml", DECK)
 check_probe()
+check_obstacles()
 check_trace_and_graph()
 check_replay()
 check_choice()

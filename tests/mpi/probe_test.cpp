@@ -41,6 +41,24 @@ TEST_F(Probe, MeasuresEveryExchangeAndSize) {
   }
 }
 
+TEST_F(Probe, MeasuresMixesWhereLinksAreOfBothKinds) {
+  ProbeOptions options;
+  options.sizes = {64};
+  options.budget_seconds = 0.001;
+  options.ranks_per_node = 2;
+  if (comm_.size() < 3) return;  // one link
+
+  const ProbeReport report = probe_exchanges(comm_, options);
+
+  std::vector<std::string> found;
+  for (const ProbeRow& row : report.rows) found.push_back(row.exchange);
+  for (const ExchangeObstacle& o : report.obstacles) found.push_back(o.exchange);
+  for (const std::string name : {"shared", "isend", "shared+put-inband", "shared+isend"}) {
+    EXPECT_EQ(std::ranges::count(found, name), 1) << name;
+  }
+  EXPECT_EQ(report.num_on_node, comm_.size() / 2);
+}
+
 TEST_F(Probe, ReportsTheSameFiguresOnEveryRank) {
   ProbeOptions options;
   options.exchanges = {"isend"};
