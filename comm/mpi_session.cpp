@@ -13,6 +13,11 @@ namespace {
 
 // In wait limits: others may still be started, or write files.
 constexpr double start_patience = 10.0, end_patience = 10.0;
+#if defined(MPICH_NUMVERSION) && MPICH_NUMVERSION < 40200000
+constexpr double finalize_patience = 0.5;  // all are past a barrier, and nothing is left to be done
+#else
+constexpr double finalize_patience = end_patience;
+#endif
 
 /// MPICH before 4.2 over UCX: a rank that has taken its leave waits in MPI_Finalize without moving
 /// messages, so one that is slower by then waits for ever (pmodels/mpich #6596). Seldom where all
@@ -55,7 +60,7 @@ void MpiSession::start(int* argc, char*** argv) {
 MpiSession::~MpiSession() {
   if (!is_owner_ || !is_mpi_initialized()) return;
   leave_together();
-  const CallWatch watch("MPI_Finalize", end_patience);
+  const CallWatch watch("MPI_Finalize", finalize_patience);
   MPI_Finalize();
 }
 
