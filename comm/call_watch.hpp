@@ -1,7 +1,5 @@
 #pragma once
 
-#include <chrono>
-
 #include <barchan/comm/mpi_error.hpp>
 
 namespace barchan {
@@ -23,8 +21,8 @@ class CallWatch {
   friend class CallWatcher;
   const char* call_;
   double patience_;
-  int rank_ = -1;  ///< in MPI_COMM_WORLD; before MPI_Init: not known
-  std::chrono::steady_clock::time_point begin_;
+  int rank_;            ///< in MPI_COMM_WORLD; before MPI_Init: not known
+  double begin_ = 0.0;  ///< by the watcher's clock [s]
   CallWatch *before_ = nullptr, *after_ = nullptr;
 };
 

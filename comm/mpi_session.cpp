@@ -11,23 +11,21 @@
 namespace barchan {
 namespace {
 
-// In wait limits: others may still be started, or write files.
-constexpr double start_patience = 10.0, end_patience = 10.0;
-#if defined(MPICH_NUMVERSION) && MPICH_NUMVERSION < 40200000
-constexpr double finalize_patience = 0.5;  // all are past a barrier, and nothing is left to be done
-#else
-constexpr double finalize_patience = end_patience;
-#endif
+constexpr double patience = 10.0;  // wait limits: others may still be started, or write files
 
 /// MPICH before 4.2 over UCX: a rank that has taken its leave waits in MPI_Finalize without moving
 /// messages, so one that is slower by then waits for ever (pmodels/mpich #6596). Seldom where all
 /// begin at once after a pause in which nobody is in MPI.
-void leave_together() {
+/// @return how long MPI_Finalize may take then [wait limits]
+double leave_together() {
 #if defined(MPICH_NUMVERSION) && MPICH_NUMVERSION < 40200000
   constexpr std::chrono::milliseconds pause{20};
-  const CallWatch watch("MPI_Barrier", end_patience);
+  const CallWatch watch("MPI_Barrier", patience);
   MPI_Barrier(MPI_COMM_WORLD);
   std::this_thread::sleep_for(pause);
+  return 0.5;  // nothing is left to be done
+#else
+  return patience;
 #endif
 }
 
@@ -44,7 +42,7 @@ void MpiSession::start(int* argc, char*** argv) {
   if (is_mpi_initialized()) return;
   int provided = MPI_THREAD_SINGLE;
   {
-    const CallWatch watch("MPI_Init_thread", start_patience);
+    const CallWatch watch("MPI_Init_thread", patience);
     check(MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &provided), "MPI_Init_thread");
   }
   is_owner_ = true;
@@ -59,8 +57,7 @@ void MpiSession::start(int* argc, char*** argv) {
 
 MpiSession::~MpiSession() {
   if (!is_owner_ || !is_mpi_initialized()) return;
-  leave_together();
-  const CallWatch watch("MPI_Finalize", finalize_patience);
+  const CallWatch watch("MPI_Finalize", leave_together());
   MPI_Finalize();
 }
 

@@ -12,11 +12,9 @@
 namespace barchan {
 namespace {
 
-constexpr double default_limit = 120.0;
-
 double limit_of_environment() {
   const char* text = std::getenv("BARCHAN_WAIT_LIMIT");
-  if (text == nullptr || *text == '\0') return default_limit;
+  if (text == nullptr || *text == '\0') return default_wait_limit;
   double seconds = 0.0;
   const char* end = text + std::strlen(text);
   const auto [stop, error] = std::from_chars(text, end, seconds);
@@ -45,11 +43,15 @@ void set_wait_limit(double seconds) {
   limit().store(seconds, std::memory_order_relaxed);
 }
 
-void Watchdog::expire(const std::string& what) const {
+std::string words_of_wait(double seconds, const std::string& what) {
   std::ostringstream text;
-  text << "waited " << seconds() << " s in vain for " << what
+  text << "waited " << seconds << " s in vain for " << what
        << "; another rank may have died or hang (the limit is BARCHAN_WAIT_LIMIT, in seconds)";
-  throw WaitError(text.str());
+  return text.str();
+}
+
+void Watchdog::expire(const std::string& what) const {
+  throw WaitError(words_of_wait(seconds(), what));
 }
 
 }  // namespace barchan

@@ -8,7 +8,9 @@
 
 namespace barchan {
 
-/// The longest that a rank waits for one message [s]. Default 120, or the environment's
+inline constexpr double default_wait_limit = 120.0;  ///< [s]
+
+/// The longest that a rank waits for one message [s]. The default, or the environment's
 /// BARCHAN_WAIT_LIMIT. Process-wide; set it before the run. Errors: InputError when the variable or
 /// `seconds` is not a positive number.
 double wait_limit();
@@ -18,6 +20,9 @@ void set_wait_limit(double seconds);
 inline double file_wait_limit() {
   return 10.0 * wait_limit();
 }
+
+/// What is said of a wait that was given up: "waited 120 s in vain for <what>; …".
+std::string words_of_wait(double seconds, const std::string& what);
 
 /// A message that never came. Other ranks may wait as well, each for something else.
 class WaitError : public RunError {
@@ -38,7 +43,7 @@ class Watchdog {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
   }
 
-  /// Throws WaitError: "waited 120 s for <what>; …".
+  /// Throws WaitError with words_of_wait().
   [[noreturn]] void expire(const std::string& what) const;
 
  private:

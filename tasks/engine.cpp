@@ -81,13 +81,12 @@ std::int64_t Simulation::EngineOf<Dim>::go_on(std::int64_t most) {
 /// neighbours ranks do not anyway.
 template <int Dim>
 int Simulation::EngineOf<Dim>::steps_in_a_go(std::int64_t most) const {
+  if (strip_->exchange() != nullptr || strip_->num_lanes() == 1 || step_ == 0) return 1;
   const bool is_last_stage = static_cast<std::size_t>(stage_) + 1 == model_.stages.size();
   const bool walls_stand = std::all_of(
       world_.walls.begin(), world_.walls.end(),
       [](const WallState& wall) { return !wall.is_active || wall.velocity == Vec3::Zero(); });
-  if (strip_->exchange() != nullptr || strip_->num_lanes() == 1 || step_ == 0 || !is_last_stage ||
-      !walls_stand || plates_->needs_forces(world_.walls))
-    return 1;
+  if (!is_last_stage || !walls_stand || plates_->needs_forces(world_.walls)) return 1;
   int steps = 1;
   const auto must_look = [this](std::int64_t step) {
     return schedule_->has_part_in(step) || (keeper_ && keeper_->is_due(step));

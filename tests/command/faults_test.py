@@ -43,45 +43,46 @@ def check_memory():
         expect_failure(f"memory, one of {ranks} ranks", ended(process), "out of memory")
 
 
-def check_hang(rows_every):
-    """@param rows_every  1: most likely the rank is stopped while all add up a row; many: in a step"""
-    name, out = f"hang, a row every {rows_every} steps", "hang.out"
-    os.environ["BARCHAN_WAIT_LIMIT"] = "5"
-    fresh(out)
-    process = begin("run", "case.toml", "--out", out, *LONG, "--exchange", "put-flag", "--threads", "1",
-                    "--set", f"output.series_every={rows_every}", ranks=3)
+def hang(name, limit, begun, *more):
+    """Stops the last of three ranks once begun(process). @return the run as it ended, what it said"""
+    fresh("hang.out")
+    os.environ["BARCHAN_WAIT_LIMIT"] = str(limit)
+    process = begin("run", "case.toml", "--out", "hang.out", *LONG, "--exchange", "put-flag", "--threads", "1", *more, ranks=3)
     del os.environ["BARCHAN_WAIT_LIMIT"]
-    wait_for(lambda: has_rows(out, 1), f"{name}: the row of step 0")  # the next may be long in coming on a loaded machine
-    stopped = next(pid for pid in children_of(process.pid) if rank_of(pid) == 2)
+    wait_for(lambda: begun(process), f"{name}: its beginning")
+    stopped = next((pid for pid in children_of(process.pid) if rank_of(pid) == 2), None)
+    expect(stopped is not None, f"{name}: rank 2 has gone, status {process.poll()}")
+    if stopped is None:
+        return messages(ended(process))
     os.kill(stopped, signal.SIGSTOP)
     done = ended(process)
     said = messages(done)
     expect(done.returncode == 1, f"{name}: status {done.returncode}: {done.stderr}")
     expect(any("in vain" in line for line in said), f"{name}: {done.stderr}")
+    expect(not any("rank 2:" in line for line in said), f"{name}: the rank that hangs speaks: {said}")
+    wait_for(lambda: not is_there(stopped), f"{name}: the stopped rank to go")
+    return said
+
+
+def check_hang(rows_every):
+    """@param rows_every  1: most likely the rank is stopped while all add up a row; many: in a step"""
+    name = f"hang, a row every {rows_every} steps"
+    # The row of step 0: the next may be long in coming on a loaded machine.
+    said = hang(name, 5, lambda _: has_rows("hang.out", 1), "--set", f"output.series_every={rows_every}")
     if rows_every > 1:
         expect(any("rank 1: " in line and ("rank 2 (right)" in line or "missing: rank 2" in line or ": MPI_" in line)
                    for line in said),
                f"{name}: rank 1 does not say for whom it waits: {said}")
-    expect(not any("rank 2:" in line for line in said), f"{name}: the rank that hangs speaks: {said}")
-    wait_for(lambda: not is_there(stopped), f"{name}: the stopped rank to go")
 
 
 def check_hang_at_start():
     """A rank that hangs while others set up windows and communicators, in calls that cannot be asked how they get on."""
-    name, out = "hang at the start", "hang.out"
-    os.environ["BARCHAN_WAIT_LIMIT"] = "3"
-    fresh(out)
-    process = begin("run", "case.toml", "--out", out, *LONG, "--exchange", "put-flag", "--threads", "1", ranks=3)
-    del os.environ["BARCHAN_WAIT_LIMIT"]
-    wait_for(lambda: any(rank_of(pid) == 2 and name_of(pid) == "barchan" for pid in children_of(process.pid)), f"{name}: rank 2")
-    stopped = next(pid for pid in children_of(process.pid) if rank_of(pid) == 2)
-    time.sleep(random.uniform(0.0, 0.3))
-    os.kill(stopped, signal.SIGSTOP)
-    done = ended(process)
-    said = messages(done)
-    expect(done.returncode == 1, f"{name}: status {done.returncode}: {done.stderr}")
-    expect(any("in vain" in line for line in said), f"{name}: {done.stderr}")
-    wait_for(lambda: not is_there(stopped), f"{name}: the stopped rank to go")
+    def has_begun(process):
+        ranks = [pid for pid in children_of(process.pid) if rank_of(pid) == 2 and name_of(pid) == "barchan"]
+        if ranks:
+            time.sleep(random.uniform(0.0, 0.3))
+        return bool(ranks)
+    hang("hang at the start", 3, has_begun)
 
 
 def check_wild():

@@ -15,22 +15,34 @@
 namespace barchan::test {
 namespace {
 
-/// What a run says in which one particle is pushed in one step. @return empty: it went on
+/// What a run that goes wrong says. @return empty: it went on
+template <class Error, class Run>
+std::string error_of(Run&& run) {
+  try {
+    run();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return {};
+}
+
+void push(Simulation& sim, std::int64_t id, double force) {
+  sim.apply_forces(
+      [&](const OwnedParticle& p) { return Vec3(p.id == id ? force : 0.0, 0.0, 0.0); });
+}
+
+/// One particle is pushed in one step.
 template <class Error>
 std::string error_after_push(const Scenario& s, MPI_Comm comm, const RunOptions& options,
                              std::int64_t id, double force) {
   Simulation sim(s.model, s.set, comm, options);
   sim.run(100);
-  sim.apply_forces(
-      [&](const OwnedParticle& p) { return Vec3(p.id == id ? force : 0.0, 0.0, 0.0); });
-  try {
+  push(sim, id, force);
+  return error_of<Error>([&] {
     sim.run(1);
     sim.clear_forces();
     sim.run(100);
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return {};
+  });
 }
 
 /// The text of rank 0, on every rank.
@@ -71,15 +83,12 @@ TEST(Culprit, OfEqualOverlapsTheSameIsNamedOnAnyNumberOfRanksAndThreads) {
   }
   const auto error = [&](MPI_Comm comm, int threads) -> std::string {
     Simulation sim(s.model, s.set, comm, with_threads(threads));
-    try {
+    return error_of<AgreedError>([&] {
       for (int piece = 0; piece < 100; ++piece) {
         sim.run(5);
         (void)sim.measure();
       }
-    } catch (const AgreedError& e) {
-      return e.what();
-    }
-    return {};
+    });
   };
   const std::string expected = from_root(is_root() ? error(MPI_COMM_SELF, 1) : "");
   EXPECT_NE(expected.find("between particle 1 at"), std::string::npos) << expected;
@@ -115,16 +124,8 @@ TEST(Culprit, OneThatGoesWildInALaneThatIsBehindIsNamedInThatStep) {
         options.max_delay_seconds = threads == 1 ? 0.0 : 1e-4;
         Simulation sim(s.model, s.set, MPI_COMM_SELF, options);
         sim.run(100);
-        sim.apply_forces(
-            [&](const OwnedParticle& p) { return Vec3(p.id == id ? force : 0.0, 0.0, 0.0); });
-        try {
-          sim.run(200);
-        } catch (const StepError& e) {
-          return e.what();
-        } catch (const AgreedError& e) {
-          return e.what();
-        }
-        return {};
+        push(sim, id, force);
+        return error_of<RunError>([&] { sim.run(200); });
       };
       const std::string expected = error(1);
       for (const int threads : {2, 3, 4}) EXPECT_EQ(error(threads), expected);
