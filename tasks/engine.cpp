@@ -78,21 +78,33 @@ std::int64_t Simulation::EngineOf<Dim>::go_on(std::int64_t most) {
 }
 
 /// Lanes need not wait for each other between steps at which nobody looks at all of them. With
-/// neighbours ranks do not anyway.
+/// neighbours ranks do not anyway. A check's answer that only says when the next is due is taken at
+/// the check: what all lanes do until then is known.
 template <int Dim>
-int Simulation::EngineOf<Dim>::steps_in_a_go(std::int64_t most) const {
+int Simulation::EngineOf<Dim>::steps_in_a_go(std::int64_t most) {
   if (strip_->exchange() != nullptr || strip_->num_lanes() == 1 || step_ == 0) return 1;
   const bool is_last_stage = static_cast<std::size_t>(stage_) + 1 == model_.stages.size();
   const bool walls_stand = std::all_of(
       world_.walls.begin(), world_.walls.end(),
       [](const WallState& wall) { return !wall.is_active || wall.velocity == Vec3::Zero(); });
   if (!is_last_stage || !walls_stand || plates_->needs_forces(world_.walls)) return 1;
-  int steps = 1;
-  const auto must_look = [this](std::int64_t step) {
-    return schedule_->has_part_in(step) || (keeper_ && keeper_->is_due(step));
+  const auto steps_until = [&](std::int64_t end) {
+    std::int64_t steps = 1;
+    end = std::min(end, step_ + most);
+    while (step_ + steps < end && !(keeper_ && keeper_->is_due(step_ + steps))) ++steps;
+    return static_cast<int>(steps);
   };
-  while (steps < most && steps < RebuildSchedule::kLongest && !must_look(step_ + steps)) ++steps;
-  return steps;
+  if (schedule_->is_check_due(step_)) {
+    const auto foreseen = schedule_->foresee();
+    const int steps =
+        foreseen && is_harmless(foreseen->answer) ? steps_until(foreseen->next_check) : 0;
+    if (steps > RebuildSchedule::kLag) {
+      (void)schedule_->must_rebuild(step_ + RebuildSchedule::kLag);
+      (void)schedule_->take_answer();
+      return steps;
+    }
+  }
+  return steps_until(schedule_->next_part(step_));
 }
 
 /// The earliest step in which a lane was, and in that the first lane.

@@ -99,7 +99,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   [[nodiscard]] bool wants_checkpoint() const;
   void make_trace();
   std::int64_t go_on(std::int64_t most);
-  [[nodiscard]] int steps_in_a_go(std::int64_t most) const;
+  [[nodiscard]] int steps_in_a_go(std::int64_t most);
   void stop_if_fast();
   void update_lists();
   void size_chunks();
@@ -109,6 +109,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   [[nodiscard]] CheckNumbers check_numbers();
   // engine_watch.cpp
   [[nodiscard]] Travel travel() const;
+  [[nodiscard]] bool is_harmless(const CheckNumbers& answer) const;
   void judge(const CheckNumbers& answer);
   void judge_balance(const CheckNumbers& answer);
   void judge_overlap(double share);

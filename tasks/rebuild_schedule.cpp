@@ -49,16 +49,29 @@ void RebuildSchedule::wait() {
   wait_seconds_ += 1e-9 * static_cast<double>(now_ns() - begin);
 }
 
+CheckNumbers RebuildSchedule::numbers() const {
+  const auto maxima = reduction_.maxima();
+  const auto sums = reduction_.sums();
+  return {maxima[0], maxima[1], static_cast<std::int64_t>(maxima[2]),
+          maxima[3], sums[0],   {sums[1], sums[2], sums[3]}};
+}
+
+std::optional<RebuildSchedule::Foresight> RebuildSchedule::foresee() {
+  wait();
+  const CheckNumbers answer = numbers();
+  const int n = next_interval(answer.distance, answer.speed, skin_, dt_, gravity_, interval_);
+  const bool has_wish = reduction_.maxima()[4] > 0.0 || reduction_.maxima()[5] > 0.0;
+  if (n < 0 || has_wish) return std::nullopt;
+  return Foresight{answer, check_step_ + kLag + n};
+}
+
 bool RebuildSchedule::must_rebuild(std::int64_t step) {
   if (step != check_step_ + kLag) return false;
   wait();
-  const auto maxima = reduction_.maxima();
-  const auto sums = reduction_.sums();
-  stop_agreed_ = maxima[4] > 0.0;
-  save_agreed_ = maxima[5] > 0.0;
-  answer_ = {maxima[0], maxima[1], static_cast<std::int64_t>(maxima[2]),
-             maxima[3], sums[0],   {sums[1], sums[2], sums[3]}};
-  const int n = next_interval(maxima[0], maxima[1], skin_, dt_, gravity_, interval_);
+  stop_agreed_ = reduction_.maxima()[4] > 0.0;
+  save_agreed_ = reduction_.maxima()[5] > 0.0;
+  answer_ = numbers();
+  const int n = next_interval(answer_->distance, answer_->speed, skin_, dt_, gravity_, interval_);
   if (n < 0) return true;
   interval_ = n;
   check_step_ = step + n;

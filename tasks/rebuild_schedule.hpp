@@ -50,18 +50,26 @@ class RebuildSchedule {
     std::int64_t num_particles = 0;  ///< its answer, too
   };
 
+  struct Foresight {
+    CheckNumbers answer;
+    std::int64_t next_check = 0;
+  };
+
   RebuildSchedule(const Communicator& communicator, double skin, double dt, double gravity);
 
   /// Whether the check of step `step` is due, so that travel() must be called. Before the step.
   [[nodiscard]] bool is_check_due(std::int64_t step) const { return step == check_step_; }
-  /// Whether a check is due before `step`, or the answer of one.
-  [[nodiscard]] bool has_part_in(std::int64_t step) const {
-    return step == check_step_ || step == check_step_ + kLag;
+  /// The first step after `step` before which a check is due, or the answer of one.
+  [[nodiscard]] std::int64_t next_part(std::int64_t step) const {
+    return step < check_step_ ? check_step_ : check_step_ + kLag;
   }
   void begin_check(const CheckNumbers& mine, Wishes wishes);
 
   /// The decision for `step`, before it; waits for the reduction when its time has come.
   [[nodiscard]] bool must_rebuild(std::int64_t step);
+  /// On a lone rank: the answer of the check just begun, kLag steps early, and the step of the next
+  /// check; none, if lists will be rebuilt or somebody had a wish. Changes nothing.
+  [[nodiscard]] std::optional<Foresight> foresee();
   /// What the check found that the last must_rebuild() had the answer of; once.
   [[nodiscard]] std::optional<CheckNumbers> take_answer() {
     return std::exchange(answer_, std::nullopt);
@@ -92,6 +100,7 @@ class RebuildSchedule {
   double wait_seconds_ = 0.0;
 
   void wait();
+  [[nodiscard]] CheckNumbers numbers() const;  ///< @pre the reduction is complete
 };
 
 }  // namespace barchan

@@ -166,6 +166,28 @@ TEST(Restart, MayBeginAtAnyStepWithAPlate) {
   restart_from_every_step(s, with_threads(1), with_threads(1));
 }
 
+TEST(Restart, MayBeginWhereLanesThatGoAheadOfEachOtherStopped) {
+  const Scenario s = with_skin(expansion(), 0.03);
+  constexpr std::int64_t kFrom = 60, kEnd = 160;
+  Simulation sim(s.model, s.set, MPI_COMM_WORLD, with_threads(1));
+  sim.run(kEnd);
+  const Words expected = words_of(sim);
+  for (const std::int64_t every : {3, 4, 5, 7}) {
+    const SharedFolder folder;
+    Simulation writer(s.model, s.set, MPI_COMM_WORLD, with_threads(2));
+    writer.keep_checkpoints(folder.path(), by_steps(every));
+    writer.run(kEnd);
+    EXPECT_TRUE(writer.finish_checkpoints());
+    EXPECT_EQ(words_of(writer), expected) << "a checkpoint every " << every << " steps";
+    for (std::int64_t step = kFrom / every * every; step < kEnd; step += every) {
+      Simulation reader =
+          Simulation::restore(s.model, folder.at(step), MPI_COMM_WORLD, with_threads(2));
+      reader.run(kEnd - step);
+      ASSERT_EQ(words_of(reader), expected) << "every " << every << ", from step " << step;
+    }
+  }
+}
+
 TEST(Restart, GoesThroughEveryExchange) {
   const Scenario s = breaking_plate(2);
   const std::int64_t middle = middle_of(s);

@@ -92,6 +92,44 @@ TEST(RebuildSchedule, IntervalsGrowWhileNothingMoves) {
   EXPECT_LE(steps, 5);
 }
 
+TEST(RebuildSchedule, ForeseesOnALoneRankWhatItWillDecide) {
+  RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0);
+  int rebuilds = 0, goes = 0;
+  for (std::int64_t step = 0; step < 2000; ++step) {
+    if (!schedule.is_check_due(step)) continue;
+    const double way = kSkin * static_cast<double>(step * 7919 % 1000) / 1800.0;
+    schedule.begin_check(travel_of(way, 0.2), {});
+    const auto foreseen = schedule.foresee();
+    const std::int64_t answer_at = schedule.next_part(step);
+    ASSERT_EQ(answer_at, step + RebuildSchedule::kLag);
+
+    const bool must_rebuild = schedule.must_rebuild(answer_at);
+
+    ASSERT_EQ(foreseen.has_value(), !must_rebuild);
+    if (must_rebuild) {
+      schedule.rebuilt(answer_at);
+      ++rebuilds;
+    } else {
+      ASSERT_EQ(foreseen->answer.distance, way);
+      ASSERT_TRUE(schedule.is_check_due(foreseen->next_check));
+      ASSERT_EQ(schedule.next_part(answer_at - 1), foreseen->next_check);
+      ++goes;
+    }
+  }
+  EXPECT_GT(rebuilds, 10);
+  EXPECT_GT(goes, 10);
+}
+
+TEST(RebuildSchedule, ForeseesNothingWhereSomebodyHasAWish) {
+  for (const bool stop : {false, true}) {
+    RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0);
+    schedule.begin_check(travel_of(0.0, 0.0), {stop, !stop});
+    EXPECT_FALSE(schedule.foresee());
+    EXPECT_FALSE(schedule.must_rebuild(RebuildSchedule::kLag));
+    EXPECT_EQ(schedule.stop_agreed(), stop);
+  }
+}
+
 TEST(RebuildSchedule, TellsOnceWhatACheckFound) {
   RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0);
   schedule.begin_check({0.5, 2.0, 17, 0.25, 100, {1, -2, 3}}, {});
