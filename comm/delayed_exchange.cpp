@@ -10,7 +10,7 @@ namespace barchan {
 
 DelayedExchange::DelayedExchange(std::unique_ptr<Exchange> inner, double max_delay_seconds,
                                  std::uint64_t seed)
-    : inner_(std::move(inner)), max_delay_seconds_(max_delay_seconds), random_(seed) {}
+    : WrappedExchange(std::move(inner)), max_delay_seconds_(max_delay_seconds), random_(seed) {}
 
 std::int64_t DelayedExchange::random_delay_ns() {
   return static_cast<std::int64_t>(
@@ -24,7 +24,7 @@ void DelayedExchange::hold_sometimes() {
 
 void DelayedExchange::send(Side side) {
   hold_sometimes();
-  inner_->send(side);
+  WrappedExchange::send(side);
 }
 
 bool DelayedExchange::is_shown(std::int64_t& shown_at) {
@@ -33,23 +33,23 @@ bool DelayedExchange::is_shown(std::int64_t& shown_at) {
 }
 
 bool DelayedExchange::poll(Side side) {
-  return inner_->poll(side) && is_shown(shown_at_[index_of(side)]);
+  return WrappedExchange::poll(side) && is_shown(shown_at_[index_of(side)]);
 }
 
 void DelayedExchange::release(Side side) {
   shown_at_[index_of(side)] = 0;
-  inner_->release(side);
+  WrappedExchange::release(side);
 }
 
 void DelayedExchange::begin_bulk(std::span<const std::byte> to_left,
                                  std::span<const std::byte> to_right) {
   hold_sometimes();
   bulk_shown_at_ = 0;
-  inner_->begin_bulk(to_left, to_right);
+  WrappedExchange::begin_bulk(to_left, to_right);
 }
 
 bool DelayedExchange::poll_bulk() {
-  return inner_->poll_bulk() && is_shown(bulk_shown_at_);
+  return WrappedExchange::poll_bulk() && is_shown(bulk_shown_at_);
 }
 
 }  // namespace barchan

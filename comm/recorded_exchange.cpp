@@ -19,20 +19,20 @@ int bulk_channel(Side side) {
 }  // namespace
 
 void RecordingExchange::release(Side side) {
-  tape_->record(halo_channel(side), inner_->received(side));
-  inner_->release(side);
+  tape_->record(halo_channel(side), WrappedExchange::received(side));
+  WrappedExchange::release(side);
 }
 
 void RecordingExchange::begin_bulk(std::span<const std::byte> to_left,
                                    std::span<const std::byte> to_right) {
   is_bulk_recorded_ = false;
-  inner_->begin_bulk(to_left, to_right);
+  WrappedExchange::begin_bulk(to_left, to_right);
 }
 
 bool RecordingExchange::poll_bulk() {
-  if (!inner_->poll_bulk()) return false;
+  if (!WrappedExchange::poll_bulk()) return false;
   if (is_bulk_recorded_) return true;
-  for (const Side side : both_sides) tape_->record(bulk_channel(side), inner_->bulk(side));
+  for (const Side side : both_sides) tape_->record(bulk_channel(side), WrappedExchange::bulk(side));
   is_bulk_recorded_ = true;
   return true;
 }

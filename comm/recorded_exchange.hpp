@@ -4,39 +4,22 @@
 #include <memory>
 #include <vector>
 
-#include <barchan/comm/exchange.hpp>
 #include <barchan/comm/tape.hpp>
+#include <barchan/comm/wrapped_exchange.hpp>
 
 namespace barchan {
 
 /// Any exchange, with all that it receives recorded on a tape.
-class RecordingExchange final : public Exchange {
+class RecordingExchange final : public WrappedExchange {
  public:
   RecordingExchange(std::unique_ptr<Exchange> inner, std::shared_ptr<Tape> tape)
-      : inner_(std::move(inner)), tape_(std::move(tape)) {}
+      : WrappedExchange(std::move(inner)), tape_(std::move(tape)) {}
 
-  std::string_view name() const override { return inner_->name(); }
-  void reserve(std::size_t bytes) override { inner_->reserve(bytes); }
-  std::span<std::byte> outgoing(Side side, std::size_t bytes) override {
-    return inner_->outgoing(side, bytes);
-  }
-  void send(Side side) override { inner_->send(side); }
-  bool poll(Side side) override { return inner_->poll(side); }
-  std::span<const std::byte> received(Side side) const override { return inner_->received(side); }
   void release(Side side) override;
   void begin_bulk(std::span<const std::byte> to_left, std::span<const std::byte> to_right) override;
-  void progress() override { inner_->progress(); }
-  bool needs_progress() const override { return inner_->needs_progress(); }
   bool poll_bulk() override;
-  std::vector<std::byte>& bulk(Side side) override { return inner_->bulk(side); }
-  std::int64_t bulk_posted(Side side) const override { return inner_->bulk_posted(side); }
-  ExchangeStats stats() const override { return inner_->stats(); }
-  HaloTimes halo_times(Side side) const override { return inner_->halo_times(side); }
-  bool is_blocking() const override { return inner_->is_blocking(); }
-  bool allows_uneven_sides() const override { return inner_->allows_uneven_sides(); }
 
  private:
-  std::unique_ptr<Exchange> inner_;
   std::shared_ptr<Tape> tape_;
   bool is_bulk_recorded_ = true;
 };
