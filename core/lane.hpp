@@ -9,82 +9,20 @@
 #include <utility>
 #include <vector>
 
+#include <barchan/core/band.hpp>
 #include <barchan/core/bonds.hpp>
 #include <barchan/core/contact_search.hpp>
 #include <barchan/core/departure.hpp>
-#include <barchan/core/grid.hpp>
-#include <barchan/core/kernels/kernel_set.hpp>
 #include <barchan/core/lane_messages.hpp>
+#include <barchan/core/measures.hpp>
 #include <barchan/core/pair_list.hpp>
 #include <barchan/core/particle_store.hpp>
 #include <barchan/core/walls.hpp>
+#include <barchan/core/world.hpp>
 
 namespace barchan {
 
 struct CheckpointShare;
-
-/// What all lanes of a run share.
-template <int Dim>
-struct World {
-  Grid<Dim> grid;
-  LawTable laws;
-  KernelSet kernels;
-  std::vector<BondLaw> bond_laws;
-  std::vector<WallSpec> wall_specs;
-  std::vector<WallState> walls;
-  ContactSearchKind search = ContactSearchKind::Cells;
-  double skin = 0.0;  ///< [m]
-  double dt = 0.0;    ///< [s]
-  std::int64_t num_particles = 0;
-};
-
-/// What changes from step to step.
-struct StepFrame {
-  double kick = 0.0;  ///< dt, or dt/2 in the first step
-  double gravity[3] = {};
-  double local_damping = 0.0;
-};
-
-/// One side of a lane: the cut, the owned rows along it, and the pairs across it.
-struct Band {
-  bool exists = false;
-  bool ghosts_first = false;  ///< ghosts precede the owned rows in canonical order
-  bool returns = false;  ///< published scheme: the right-hand side computes the pairs of this cut
-  Rows rows;             ///< owned rows that are somebody's ghosts
-  CellIndex ghost_cells;
-  Planes planes;  ///< of the higher ones of the pairs across
-  PairList across;
-  std::vector<PairBlock> blocks;        ///< of `across`
-  std::vector<PairBlock> inner_blocks;  ///< of the pairs within the band that wait for its ghosts
-  double travel = 0.0;  ///< bound of how far ghosts have come since the last rebuild [m]
-};
-
-/// Sums over a lane, added over lanes and ranks in any order.
-struct Measures {
-  ExactSum kinetic, elastic, gravitational;  ///< [J]
-  ExactSum momentum[3];                      ///< [N·s]
-  std::int64_t contacts = 0;                 ///< touching pairs without a bond, each once
-  std::int64_t bonds = 0, broken_bonds = 0;
-  double max_overlap = 0.0;        ///< [m], with particles or walls
-  double max_overlap_share = 0.0;  ///< of the smaller radius
-  double max_speed = 0.0;          ///< [m/s]
-  void add(const Measures& other);
-};
-
-/// How far particles have come since the last rebuild, and how fast they are. A distance beyond
-/// half the skin that was reached between a check and the rebuild it led to is told by the next
-/// check.
-struct Travel {
-  double distance2 = 0.0;    ///< largest squared displacement [m²]
-  double speed2 = 0.0;       ///< largest squared speed [m²/s²]
-  std::int64_t outside = 0;  ///< id of a particle that is out of the domain, the largest; 0: none
-};
-
-/// Seconds of contact search, by the phase that it is part of.
-struct SearchSeconds {
-  double rebuild = 0.0;
-  double chunks = 0.0, bands = 0.0;  ///< all-pairs searches anew in every step
-};
 
 /// A lane is to a thread what a strip is to a rank: slabs [slab_begin, slab_end) with their
 /// particles, pairs and bonds, and ghosts of the slabs next to it. All functions are

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include <barchan/comm/reduction.hpp>
-#include <barchan/core/lane.hpp>
+#include <barchan/core/departure.hpp>
 
 namespace barchan {
 

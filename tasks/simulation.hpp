@@ -11,8 +11,10 @@
 #include <barchan/comm/auto_exchange.hpp>
 #include <barchan/comm/communicator.hpp>
 #include <barchan/comm/exchange.hpp>
-#include <barchan/core/lane.hpp>
+#include <barchan/core/departure.hpp>
+#include <barchan/core/measures.hpp>
 #include <barchan/core/model.hpp>
+#include <barchan/core/walls.hpp>
 #include <barchan/tasks/run_options.hpp>
 
 namespace barchan {

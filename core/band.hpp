@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include <barchan/core/cell_index.hpp>
+#include <barchan/core/contact_search.hpp>
+#include <barchan/core/pair_list.hpp>
+#include <barchan/core/rows.hpp>
+
+namespace barchan {
+
+/// One side of a lane: the cut, the owned rows along it, and the pairs across it.
+struct Band {
+  bool exists = false;
+  bool ghosts_first = false;  ///< ghosts precede the owned rows in canonical order
+  bool returns = false;  ///< published scheme: the right-hand side computes the pairs of this cut
+  Rows rows;             ///< owned rows that are somebody's ghosts
+  CellIndex ghost_cells;
+  Planes planes;  ///< of the higher ones of the pairs across
+  PairList across;
+  std::vector<PairBlock> blocks;        ///< of `across`
+  std::vector<PairBlock> inner_blocks;  ///< of the pairs within the band that wait for its ghosts
+  double travel = 0.0;  ///< bound of how far ghosts have come since the last rebuild [m]
+};
+
+}  // namespace barchan
