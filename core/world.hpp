@@ -29,9 +29,9 @@ struct World {
 
 /// What changes from step to step.
 struct StepFrame {
-  double kick = 0.0;  ///< dt, or dt/2 in the first step
-  double gravity[3] = {};
-  double local_damping = 0.0;
+  double kick = 0.0;           ///< dt, or dt/2 in the first step [s]
+  double gravity[3] = {};      ///< [m/s²]
+  double local_damping = 0.0;  ///< of the stage (Stage)
 };
 
 }  // namespace barchan
