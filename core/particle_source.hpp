@@ -102,9 +102,8 @@ struct ParticleSource {
   std::optional<double> density;  ///< instead of the material's (or the file's), 2D areal
   Vec3 velocity = Vec3::Zero();   ///< [m/s]; a file's own velocities are added to it
   Vec3 omega = Vec3::Zero();      ///< [rad/s]; likewise
-  std::optional<int>
-      bond;  ///< index into Model::bond_laws: bonds those of this source that touch
-             ///< (ring: the neighbours along it; touch: gap <= 1e-6 of the radii's sum)
+  std::optional<int> bond;  ///< index into Model::bond_laws: bonds those of this source that touch
+      ///< (ring: the neighbours along it; touch: gap <= 1e-6 of the radii's sum)
   std::optional<Box> fixed;  ///< particles with centres in here never move; endless box = all
   std::variant<FileSource, LatticeSource, PackingSource, RingSource, ListSource> kind;
 };
