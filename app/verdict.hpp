@@ -11,9 +11,10 @@ namespace barchan::app {
 /// Does the work of a command and turns what it throws into one message on stderr and an exit
 /// status.
 ///
-/// An InputError is the same on every rank: rank 0 prints it, all return 2. So is a CommonError,
-/// and ends all ranks with status 1. Any other error may be known to one rank only, while the
-/// others wait for it: it is printed once and all ranks are ended with status 1.
+/// An InputError is the same on every rank: rank 0 prints it, all return 2. A CommonError is the
+/// same on every rank, too: rank 0 prints it, and all ranks end with status 1. Of any other error
+/// one rank alone may know, while the others wait for it: that rank prints it and ends all ranks
+/// with status 1.
 /// @param world  null without MPI
 int with_verdict(const Communicator* world, const std::function<void()>& work);
 

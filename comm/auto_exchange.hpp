@@ -44,8 +44,8 @@ struct SelectedExchange {
 /// makes the one that adds least to a step with this work. Within 10 % or half a microsecond of the
 /// best the preferred one is taken. When no window can be made the two-sided one remains.
 /// Only the time that a run takes depends on the outcome. Collective; the verdict is common.
-/// @param bytes  of a halo message, @param work  of a step; the largest and the least of all ranks
-/// are taken
+/// @param bytes  of a halo message; the largest of all ranks counts
+/// @param work   of a step; the least of all ranks counts
 /// Errors: MpiError, RunError.
 [[nodiscard]] SelectedExchange select_exchange(const Communicator& communicator,
                                                Neighbours neighbours,

@@ -47,8 +47,8 @@ struct HaloTimes {
 /// In time the sides are free, in count they are not: in every step one message each way per
 /// existing side. The order is
 ///
-///     outgoing(n) → send(n)      poll(n) → received(n) → release(n)      release(n) → outgoing(n +
-///     1)
+///     outgoing(n) → send(n)
+///     poll(n) → received(n) → release(n) → outgoing(n + 1)
 ///
 /// for each side. The last edge is the caller's duty; with it two slots per direction are enough
 /// and nobody needs credits (slot_exchange.hpp proves it). A breach throws std::logic_error.

@@ -26,8 +26,9 @@ struct MessageKey {
 };
 inline constexpr int num_lane_sides = 2 * num_lanes;
 
-/// A message lies in memory as   | header, 64 bytes | payload ... | trailer, 8 bytes, where an
-/// exchange wants one |
+/// A message in memory; only some exchanges have a trailer:
+///
+///     | header, 64 bytes | payload … | trailer, 8 bytes |
 struct MessageHeader {
   std::uint64_t number = 0;
   std::uint64_t bytes = 0;     ///< of payload

@@ -30,9 +30,9 @@ struct WorkPattern {
 
 /// Measures one exchange on the real neighbours.
 ///
-///   pure        send, wait                                            → both_ways
-///   overlapped  send, (work piece, poll) …, wait; work = both_ways    → overlap, cpu
-///   alone       send, work of twice that in one piece, wait           → availability
+///   pure         send, wait                                            → both_ways
+///   overlapped   send, (work piece, poll) …, wait; work = both_ways    → overlap, cpu
+///   alone        send, work of twice that in one piece, wait           → availability
 ///
 ///   overlap      = max(0, 1 − (t_overlapped − t_work) / t_pure)      OSU micro-benchmarks
 ///   availability = 1 − (t_alone − t_work) / t_pure                   Sandia SMB, host availability

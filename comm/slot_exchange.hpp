@@ -22,12 +22,14 @@ struct SlotCapacity {
 /// Each lane has two slots per direction; message n uses slot n mod 2. Happens-before, A and B
 /// neighbours, one lane:
 ///
-///     pack A(n) → post A(n) → arrived B(n) → release B(n)      and the same with A and B swapped
-///     release of n  →  pack of n+1, on either rank              (the duty of the caller, or of the
-///     rounds below)
+///     pack A(n) → post A(n) → arrived B(n) → release B(n)     and the same with A and B swapped
+///     release of n → pack of n+1, on either rank              duty of the caller, or of the rounds
+///
 /// hence
-///     release B(n−1) → pack B(n) → post B(n) → arrived A(n) → release A(n) → pack A(n+1):
-/// when A packs n+1, B has released n−1, which was the last to use that slot, and A's own copy of
+///
+///     release B(n−1) → pack B(n) → post B(n) → arrived A(n) → release A(n) → pack A(n+1)
+///
+/// When A packs n+1, B has released n−1, which was the last to use that slot, and A's own copy of
 /// n−1 has left.
 ///
 /// Bulk: both neighbours send a fragment a round, empty or not, with a flag whether they have more;

@@ -7,9 +7,10 @@ namespace barchan {
 
 /// A rank's window, the same on every rank:
 ///
-///     | words: halo left slot 0, slot 1 | halo right | bulk left | bulk right |     a cache line
-///     each | halo from left: slot 0, slot 1 | halo from right: 2 slots | bulk from left: 2 | bulk
-///     from right: 2 |
+///                halo              bulk
+///                left     right    left     right
+///     words    | 0 | 1 |  0 | 1 |  0 | 1 |  0 | 1 |     a cache line each
+///     slots    | 0 | 1 |  0 | 1 |  0 | 1 |  0 | 1 |     header, payload, trailer
 ///
 /// "Left" is the owner's left: what a rank sends to its right lands in the left part of its right
 /// neighbour, so nothing is confused where both neighbours are the same rank. Each slot has its own

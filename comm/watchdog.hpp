@@ -53,9 +53,9 @@ class Watchdog {
 };
 
 /// Polls until `poll()` is true.
-/// @param describe  gives the text for a wait that never ends: which rank waits for which message
-/// of which step
-///                  from whom, as in "rank 2: halo message of step 17 from rank 1 (left)"
+/// @param describe  gives the text for a wait that takes too long: which rank waits for which
+///                  message of which step from whom, as in
+///                  "rank 2: halo message of step 17 from rank 1 (left)"
 /// Errors: WaitError after wait_limit() seconds; the caller then ends all ranks
 /// (Communicator::abort), since the others may wait for this one.
 template <class Poll, class Describe>

@@ -31,8 +31,11 @@ struct Bond {
 /// stays equal there.
 ///
 /// Elastic beam after Potyondy & Cundall 2004, doi:10.1016/j.ijrmms.2004.09.011: normal force from
-/// the length, shear and moments incremental, all with a dashpot. Breaks where
-///   tension/A + |M|·R/I > tensile strength  or  |shear|/A (+ |twist|·R/J) > shear strength.
+/// the length, shear and moments incremental, all with a dashpot. It breaks where
+///
+///   tension/A + |M|·R/I     > tensile strength   or
+///   |shear|/A + |twist|·R/J > shear strength         (2D: no twist)
+///
 /// The force is computed from a to b on either side of a cut, so both sides agree to the bit.
 template <int Dim>
 class BondSet {

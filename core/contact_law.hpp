@@ -4,20 +4,19 @@
 
 namespace barchan {
 
-// Linear spring–dashpot with Coulomb friction, written once for one pair, four or eight (S:
-// simd/*.hpp).
+// Linear spring–dashpot with Coulomb friction, written once for one, four or eight pairs
+// (S: simd/*.hpp).
 //
-//   fn = min(0, cn·vn − kn·overlap)                 the no-tension clamp; the cap is +inf when
-//   switched off ft = kt·s + ct·vt,  s' = s + vt·dt,  |ft| <= mu·|fn|, s' cut back to the sliding
-//   limit
+//   fn = min(cap, cn·vn − kn·overlap)         cap = 0: the contact never pulls; +inf: it may
+//   s' = s + vt·dt                            tangential spring, zero at first touch
+//   ft = kt·s' + ct·vt,  |ft| <= mu·|fn|      where friction slides, s' is cut back to the limit
 //
 // Lengths [m], velocities [m/s], forces [N]. The response is the force on the first particle of the
 // pair; the second one gets its negative, and both get the same torque / radius. All differences
 // are second minus first, so swapping the two negates the force exactly: both sides of a cut agree
 // to the bit. Sources: Cundall & Strack 1979, doi:10.1680/geot.1979.29.1.47; the clamp is ours.
 
-/// Constants of one law, one lane each. The dashpots are constant + rate·m_eff +
-/// critical·sqrt(m_eff).
+/// Constants of one law, one per pair. A dashpot is constant + rate·m_eff + critical·sqrt(m_eff).
 template <class S>
 struct LawConstants {
   using Real = typename S::Real;

@@ -20,8 +20,8 @@ class ExactSum {
   void add(const ExactSum& other) {
     for (std::size_t d = 0; d < kDigits; ++d) digits_[d] += other.digits_[d];
   }
-  /// The same sum with every digit but the highest in [0, 2^32). Whoever adds for ever does this at
-  /// least every 2^30 terms.
+  /// The same sum with every digit but the highest in [0, 2^32). A sum that grows through a whole
+  /// run needs this at least every 2^30 terms.
   void carry();
   /// The sum, rounded once (to within an ulp).
   [[nodiscard]] double value() const;

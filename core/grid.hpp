@@ -35,8 +35,8 @@ class Grid {
   Grid() = default;
 
   /// @param cutoff         reach of the candidate search [m]
-  /// @param num_particles  in all; bounds the number of cells, so that an open domain costs no
-  /// memory
+  /// @param num_particles  in all; bounds the number of cells, so that a large domain that is
+  ///                       mostly empty costs no memory
   Grid(const Domain& domain, double cutoff, std::int64_t num_particles);
 
   [[nodiscard]] int num_slabs() const { return cells_[0]; }

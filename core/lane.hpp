@@ -29,9 +29,12 @@ struct CheckpointShare;
 /// single-threaded and touch this lane only.
 ///
 /// The steady step (`E precedes F` means E happens before F):
-///   run_chunk(0) precedes run_chunk(1) precedes … ; all chunks precede finish_band(Right);
-///   run_chunk(0) precedes finish_band(Left);
-///   unpack_halo(side) precedes finish_band(side) precedes pack_halo(side) of the next step.
+///
+///   run_chunk(c)       precedes run_chunk(c + 1)
+///   run_chunk(0)       precedes finish_band(Left)
+///   the last chunk     precedes finish_band(Right)
+///   unpack_halo(side)  precedes finish_band(side)
+///   finish_band(side)  precedes pack_halo(side) of the next step
 ///
 /// Rows of a band whose ghosts come first in the canonical order wait for them. Their pairs with
 /// rows that do not wait are computed with the chunks, kept (`HeldLow`, `HeldHigh`), and summed by
@@ -66,7 +69,7 @@ class Lane {
   /// Instead of finish_band(Right). @param results  what results() gave on the other side
   void finish_right_band(std::span<const double> results);
 
-  // ---- particles that left the domain (lane_outside.cpp), between steps
+  // ---- particles that left the domain (lane_watch.cpp), between steps
   /// Owned particles out of the domain, in canonical order.
   [[nodiscard]] std::vector<Departure> outside(std::int64_t step) const;
   /// These particles, of any lane, go in the begin_rebuild that follows, with their contacts and
@@ -94,8 +97,8 @@ class Lane {
   [[nodiscard]] WorstOverlap worst_overlap() const;
 
   // ---- the rebuild (lane_rebuild.cpp), in this order
-  /// Instead of begin_rebuild at the start of a run: owns these particles and bonds. @pre they lie
-  /// in the slabs
+  /// Instead of begin_rebuild at the start of a run: owns these particles and bonds.
+  /// @pre they lie in the slabs
   void seed(int slab_begin, int slab_end, std::span<const ParticleData> particles,
             std::span<const BondData> bonds, std::span<const double> bond_lengths,
             std::span<const char> is_bonded);

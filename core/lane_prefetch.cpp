@@ -4,7 +4,7 @@
 #include <barchan/core/lane.hpp>
 
 // Where a lane is larger than the third cache, a step streams all of it from memory. What a block
-// needs is asked for while the block before it is worked on:
+// needs is prefetched while the block before it is worked on:
 //
 //   rows    | met already … | first met in the next block | …      one slab on, from memory
 //           | met already … | first met again             | …      one line of cells on
@@ -12,7 +12,7 @@
 //
 // A row is met for the first time by the rows one slab before it, and a slab's work later, when it
 // has left the second cache, by the rows one line of cells before it. Both edges follow from the
-// cells alone. Pairs around an end of a periodic box, a few, are not asked for.
+// cells alone. Pairs around an end of a periodic box, a few, are not prefetched.
 
 namespace barchan {
 namespace {

@@ -6,8 +6,9 @@
 // The published exchange: the band at a right cut goes to the right neighbour, which computes the
 // forces of each contact and sends them back.
 //
-//   | number of contacts | force records, the ghost's number in an unused slot … | bonds of the cut
-//   … |
+//   | number of contacts | force records … | bonds of the cut … |
+//
+// The unused component of a force record holds the number of the ghost that it belongs to.
 
 namespace barchan {
 namespace {

@@ -3,11 +3,10 @@
 
 #include <barchan/core/lane.hpp>
 
-// Where many candidates do not touch, a block works on those alone that touch or
-// are about to: a narrow phase tells which they are, and pairs, laws and springs are packed to the
-// front of the block. They serve until particles may have come far enough for another pair to
-// touch; one that parted meanwhile has no force and loses its spring, as it would in the whole
-// list.
+// Where many candidates do not touch, a block works only on those that touch or soon may. A narrow
+// phase finds them, and packs their pairs, laws and springs to the front of the block. The packed
+// pairs serve until particles may have moved far enough for another pair to touch. A pair that
+// parts meanwhile has no force and loses its spring, as it would in the whole list.
 //
 //   candidates   | a b c d e f g h | …        springs, unpacked   | a – c – – f g – |
 //   mask         | 1 0 1 0 0 1 1 0 |          springs, packed     | a c f g | …
@@ -78,8 +77,8 @@ void unpack(PairList& list, PairBlock& block) {
 }  // namespace
 
 // A narrow margin asks for the narrow phase often, a wide one lets more pairs in that do not touch.
-// Over n steps that cost n·margin/skin and 1/n, the best margin is about sqrt(skin · travel of a
-// step).
+// With n steps between two narrow phases, the costs go with n·travel/skin and 1/n, so the best
+// margin n·travel is about sqrt(skin·travel), where travel is that of one step.
 template <int Dim>
 double Lane<Dim>::packing_margin() const {
   return std::sqrt(world_->skin * step_travel_);

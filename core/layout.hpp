@@ -9,9 +9,12 @@ namespace barchan {
 
 /// Particles live in aligned records, so that a batch of pairs is aligned loads and a transpose:
 ///
-///   2D  motion | x  y  r  –  | vx vy u  1/m |            force | fx fy ft – |
-///   3D  motion | x  y  z  r  | vx vy vz 1/m |  spin | ux uy uz – |  force | fx fy fz – | tx ty tz
-///   – |
+///   2D  motion | x  y  r  –  | vx vy u  1/m |
+///       force  | fx fy ft –  |
+///
+///   3D  motion | x  y  z  r  | vx vy vz 1/m |
+///       spin   | ux uy uz –  |
+///       force  | fx fy fz –  | tx ty tz –   |
 ///
 /// u = r·omega is the surface speed [m/s]; ft, (tx ty tz) are torque / r [N]. A fixed particle has
 /// 1/m = 0.

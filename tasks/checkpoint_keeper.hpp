@@ -25,14 +25,15 @@ struct CheckpointCopy {
 
 /// Writes checkpoints behind the steps:
 ///
-///     every rank   copy ─► hash, write, fsync ──► agree ─┐
-///     rank 0                    (a thread)     (numbers) └► manifest, fsync, rename, fsync, prune
-///                                                                   (a thread)
+///     every rank   copy ─► hash, write, fsync ─► agree ─┐
+///                          (a thread)                   │
+///     rank 0                                            └► manifest, fsync, rename, fsync, prune
+///                                                          (a thread)
 ///
-/// The next begin() waits for the end of the one before: at most one is under way. Threads touch no
-/// MPI; poll(), between steps, moves it on. A checkpoint that cannot be written is a warning: those
-/// before it stay, the run goes on. Construction, begin, finish and destruction are collective;
-/// rank 0 has the warnings.
+/// At most one checkpoint is under way: begin() waits for the end of the one before. The threads
+/// call no MPI; poll(), between steps, does. A checkpoint that cannot be written gives a
+/// warning; the checkpoints before it stay, and the run continues. Construction, begin, finish and
+/// destruction are collective; rank 0 has the warnings.
 class CheckpointKeeper {
  public:
   /// Removes what unfinished checkpoints an earlier run left. @param step  where the run stands

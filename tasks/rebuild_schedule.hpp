@@ -26,8 +26,10 @@ struct CheckNumbers {
 /// of speed v. The reduction has until step s + kLag to come in, behind the work of kLag steps.
 /// Then, with t(n) = (2·kLag + n)·dt,
 ///
-///     d + 2·v·t(n) + g·t(n)² <= skin/2   for some n <= 2·(the last n), n <= kLongest:  next check
-///     n steps later; for no n >= 0: rebuild now.
+///     d + 2·v·t(n) + g·t(n)² <= skin/2
+///
+/// The next check is n steps later, for the largest n that satisfies this, is at most twice the
+/// last n, and at most kLongest. Where not even n = 0 does, lists are rebuilt now.
 ///
 /// t(n) reaches to the answer of the next check, and speeds may double until then. Whoever takes
 /// the answer verifies the bound after the fact: d > skin/2 means that a contact may have been

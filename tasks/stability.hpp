@@ -14,20 +14,20 @@ struct StepLimit {
   double step = 0.0;  ///< [s]
 };
 
-/// What keeps the explicit scheme stable, smallest first; never empty of what the particles can do.
+/// The limits on the time step of the explicit scheme, smallest first.
 ///
 /// With mass m, stiffness k and dashpot c the leapfrog with a lagging velocity is stable for
-///   dt <= (sqrt(c² + 4·m·k) − c) / k,    2·sqrt(m/k) without dashpot, 2·m/c without spring.
-/// - "contact" and "damping": two particles of these materials alone, the lightest there are,
-/// without and with
+///
+///   dt <= (sqrt(c² + 4·m·k) − c) / k      2·sqrt(m/k) without dashpot, 2·m/c without spring
+///
+/// - "contact" and "damping": a pair of the lightest particles of these materials, without and with
 ///   the dashpot; "tangential": the same with kt, ct and the mass that sliding and rolling have
 ///   together; "wall": a particle against a material of infinite mass. A particle in a packing
 ///   touches several others and is stiffer than a pair by up to 3 (disks) or 4 (spheres) in k and
 ///   c: hence kAdvisedShare.
 /// - "bond": every particle with all of its bonds, its partners moving against it, exact for a pair
-/// and for
-///   a long chain; stretching, shearing (with rotation) and bending each for itself.
-/// - "plate": a loaded plate on as many of the particles as fit under it side by side.
+///   and for a long chain; stretching, shearing (with rotation) and bending separately.
+/// - "plate": a loaded plate on as many particles as fit under it side by side.
 /// @param particles  fixed ones count as infinitely heavy
 /// Pure. Same on every rank.
 std::vector<StepLimit> step_limits(const Model& model, const ParticleSet& particles);

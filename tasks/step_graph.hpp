@@ -40,15 +40,17 @@ struct StepTimes {
 /// One time step as a graph, built once:
 ///
 ///     begin ─► chunk(l) ─► chunk(l) ─► … ─► left(l) ─► right(l) ─► end        for every lane l
-///                │ polls                      ▲           ▲
-///                └────────► arrived(Left) ────┘           │
-///                           arrived(Right) ───────────────┘
+///                 │                            ▲          ▲
+///                 │ polls                      │          │
+///                 ├───────► arrived(Left) ─────┘          │        the outer lanes of the strip
+///                 └───────► arrived(Right) ───────────────┘
 ///
-///   chunk(l, c)      precedes chunk(l, c+1); the last one precedes left(l)
-///   left(l)          precedes right(l): a lane is never worked on twice at a time
-///   arrived(side)    precedes left/right of the lane at that end of the strip; the other cuts are
-///   in memory left/right(l)    of step k precede the sends of step k+1's halo, which fly behind
-///   the chunks of step k+1
+///   chunk(l, c)       precedes chunk(l, c+1); the last one precedes left(l)
+///   left(l)           precedes right(l): two workers never work on one lane at a time
+///   arrived(side)     precedes left or right of the lane at that end of the strip;
+///                     the lanes' other cuts are in memory
+///   left, right(l)    of step k precede the sends of step k+1's halo,
+///                     which is in flight behind the chunks of step k+1
 ///
 /// A chunk that ends polls the exchange under a try-lock; when all is in, it still lets the
 /// exchange advance, for neighbours who wait for the rest of what this rank sent. An exchange whose

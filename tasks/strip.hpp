@@ -37,9 +37,9 @@ typename Lane<Dim>::Side in_core(Side side) {
 /// ranks.
 ///
 ///   ranks    |        0        |        1        |
-///   lanes    |   0    |   1    |   2    |   3    |      lane cuts lie on slab faces; rank cuts are
-///   every T-th of them
+///   lanes    |   0    |   1    |   2    |   3    |
 ///
+/// Cuts lie on slab faces. With T threads a rank, every T-th of them is between ranks.
 /// A cut between two lanes of one rank works like one between ranks, with an outbox in memory for a
 /// message: a lane writes the outbox of step k + 1 when its band is finished in step k. Outboxes
 /// come in pairs, so that the neighbour may still read the one of step k.

@@ -37,8 +37,7 @@ inline double draw(std::uint64_t seed, std::uint64_t counter) {
 ///   leave()  -> port out of the sender: bytes / rate, one packet after the other
 ///            -> the line: delay, jitter, spike; in order per flow
 ///   arrive() -> port into the receiver: bytes / rate again, overlapped with the first
-///   (cut-through), so that
-///               only several senders to one receiver queue there
+///               (cut-through), so that only several senders to one receiver queue there
 ///
 /// Both return the time of the packet's last bit, or nothing when a full port drops it.
 class Wire {

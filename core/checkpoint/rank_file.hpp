@@ -28,8 +28,9 @@ struct RankFileSeal {
 ///   | header, 64 bytes | table, 32 bytes a block | block | block | …
 ///
 ///   header  | magic 8 | version 4 | dimension 4 | step 8 | rank 4 | ranks 4 | blocks 4 | 0 4 |
-///   file bytes 8 | 0 8 | hash 8 | table   | column 4 | lane 4 | offset 8 | bytes 8 | hash 8 |
-///   block   a column of a lane, zeros up to a multiple of 64 bytes
+///           | file bytes 8 | 0 8 | hash 8 |
+///   table   | column 4 | lane 4 | offset 8 | bytes 8 | hash 8 |      one row a block
+///   block   | a column of a lane … | zeros up to a multiple of 64 bytes |
 ///
 /// Hashes are XXH3 of 64 bits: the header's over header (its hash taken as zero) and table, a
 /// block's over the block with its zeros. No byte is outside a hash.

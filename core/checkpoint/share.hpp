@@ -42,8 +42,8 @@ enum class CheckpointColumn : std::uint32_t {
 /// What a checkpoint keeps of one lane, column by column. Every contact, bond and particle of a run
 /// is in one share.
 ///
-/// `references` are the positions at the last rebuild, from which order and lists follow; all else
-/// is as it stands.
+/// `references` are the positions at the last rebuild, from which order and lists follow; all
+/// other columns hold the values of now.
 struct CheckpointShare {
   std::vector<std::int64_t> ids;
   std::vector<double> references, positions, velocities;  ///< [m], [m], [m/s]; Dim each

@@ -28,8 +28,7 @@ Pattern pattern_of(const LatticeSource& source) {
   switch (source.arrangement) {
     case Arrangement::Hexagonal:
       return {s, 0.5 * std::sqrt(3.0) * s, s, 0.5 * s, 0.0};
-    // Rows of distance s·√2 along x, every row and layer s/√2 further, each shifting by half: the
-    // fcc lattice.
+    // The fcc lattice: sites s·√2 apart along x; rows and layers s/√2 apart, each shifted by half.
     case Arrangement::Fcc: {
       const double half = std::sqrt(0.5) * s;
       return {2.0 * half, half, half, half, half};

@@ -12,9 +12,8 @@ namespace barchan {
 /// Makes the particles and bonds of a deck. Generated ids follow each other from the highest so
 /// far, 1 at first; a file keeps its own. Centres on periodic axes end up in [lo, hi). The result
 /// depends on nothing but the arguments and the files: every rank may make it for itself.
-/// @throws InputError with the place in the deck, or in the particle file: ids that are taken,
-/// particles outside
-///         the domain, types without material, what does not fit into its region
+/// @throws InputError with the place in the deck or in the particle file: ids that are taken,
+///         particles outside the domain, types without material, what does not fit into its region
 [[nodiscard]] ParticleSet make_particles(const Model& model,
                                          std::span<const ParticleSource> sources);
 

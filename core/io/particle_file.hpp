@@ -34,9 +34,8 @@ struct ParticleFile {
 /// order. z, velocities and angular velocities may be absent (zero); other columns, blank lines and
 /// lines that begin with # are ignored.
 /// @throws InputError with file, line and column: malformed or non-finite number, missing or
-/// repeated column,
-///         too few or too many fields, id or type below 1, repeated id, radius or density not
-///         positive, no particles
+///         repeated column, too few or too many fields, id or type below 1, repeated id, radius or
+///         density not positive, no particles
 [[nodiscard]] ParticleFile read_particles_csv(const std::string& path);
 [[nodiscard]] ParticleFile parse_particles_csv(std::string_view text, const std::string& file);
 

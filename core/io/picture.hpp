@@ -33,8 +33,8 @@ struct PictureInput {
 /// Draws particles as a PNG: 2D disks from above; 3D spheres from the side (along +y, z up),
 /// shaded. The view is the domain's part that holds particles and lines. One pass over the
 /// particles: 10^6 in about a second.
-/// @pre radii (and values, unless empty) are as many as positions @throws RunError when it cannot
-/// be written
+/// @pre there are as many radii (and values, unless empty) as positions
+/// @throws RunError when the file cannot be written
 void write_picture(const std::string& path, const PictureInput& input);
 
 }  // namespace barchan

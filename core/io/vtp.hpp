@@ -7,10 +7,10 @@
 #include <variant>
 #include <vector>
 
-// Snapshots that ParaView and OVITO open: `.vtp` one piece per rank, `.pvtp` that names the pieces
-// of one time,
-// `.pvd` that names the times. Arrays are inline base64 without compression (VTK "binary"), since
-// OVITO reads no appended data; only Float64, Int64 and Int32 are used, since it reads few others.
+// Snapshots that ParaView and OVITO open: a `.vtp` is the piece of one rank, a `.pvtp` names the
+// pieces of one time, a `.pvd` names the times. Arrays are inline base64 without compression (VTK
+// "binary"), since OVITO reads no appended data; only Float64, Int64 and Int32 are used, since it
+// reads few others.
 
 namespace barchan {
 

@@ -8,8 +8,10 @@ namespace barchan {
 
 /// Rows [begin, end) whose forces are complete: kick, drift, forces back to zero.
 ///
-///   dv = F·kick/m + g·kick,  dv −= alpha·|dv|·sign(v)   (Cundall's local damping; also on spins)
-///   v += dv,  x += dt·v                                  (leapfrog: v half a step behind x)
+///   dv  = F·kick/m + g·kick
+///   dv −= alpha·|dv|·sign(v)      Cundall's local damping, of spins too
+///   v  += dv
+///   x  += dt·v                    leapfrog: v is half a step behind x
 ///
 /// `kick` is dt, and dt/2 in the first step of a run, which makes the scheme second order from the
 /// start. Source: Cundall & Strack 1979; local damping: Cundall 1987.
