@@ -43,7 +43,9 @@ constexpr KeySpec kParticleKeys[] = {
     {"packing", "count", T::PositiveInteger, "", "none", "particles; this or `solid_fraction`"},
     {"packing", "solid_fraction", T::ProperFraction, "", "none",
      "share of the region, less its holes, that particles fill; this or `count`"},
-    {"packing", "holes", T::Tables, "", "none", "disks or spheres that no particle reaches into"},
+    {"packing", "holes", T::Tables, "", "none",
+     "disks or spheres that no particle reaches into; they may overlap and reach out of the "
+     "region"},
     {"packing", "seed", T::NonNegativeInteger, "", "1", "of radii and positions"},
 
     {"ring", "center", T::Vector, "m", "required", "of the ring (2D only)"},

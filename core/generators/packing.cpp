@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <barchan/core/error.hpp>
+#include <barchan/core/generators/hole_volume.hpp>
 #include <barchan/core/generators/lattice.hpp>
 #include <barchan/core/generators/packing.hpp>
 
@@ -75,6 +76,20 @@ PairSpace box_of(const Model& model, const Box& region) {
   return box;
 }
 
+/// The region of a source, and its holes with the images that reach into it where the domain wraps
+/// and the region does not.
+PackSpace space_of(const Model& model, const PackingSource& source) {
+  PackSpace space{box_of(model, source.region), {}};
+  Vec3 period = Vec3::Zero();
+  for (int axis = 0; axis < model.dimension; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    if (model.domain.periodic[a] && !space.box.periodic[a])
+      period[axis] = model.domain.hi[axis] - model.domain.lo[axis];
+  }
+  space.holes = with_images(source.holes, space.box, period);
+  return space;
+}
+
 /// The axis that a counted packing fills from its lower end: against gravity, else the strip axis.
 struct FillAxis {
   int axis = 0;
@@ -121,11 +136,11 @@ PackSpace lower_part(const PackSpace& whole, const FillAxis& fill, double volume
   for (int other = 0; other < whole.box.dimension; ++other) {
     if (other != axis) section *= whole.box.hi[other] - whole.box.lo[other];
   }
-  double holes = 0.0;
-  for (const Hole& hole : whole.holes) holes += solid_volume(hole.radius, whole.box.dimension);
-  const double needed = (volume + holes) / section * spare;
+  const double needed = (volume + hole_volume(whole.box, whole.holes)) / section * spare;
   if (needed >= 0.95 * length) return part;
-  part.box.periodic[static_cast<std::size_t>(axis)] = false;
+  bool& wraps = part.box.periodic[static_cast<std::size_t>(axis)];
+  if (wraps) part.holes = with_images(whole.holes, whole.box, length * Vec3::Unit(axis));
+  wraps = false;
   if (fill.from_high) {
     part.box.lo[axis] = whole.box.hi[axis] - needed;
   } else {
@@ -193,11 +208,9 @@ std::vector<Grain> pack_fraction(const PackSpace& space, const PackingSource& so
       if (space.box.periodic[static_cast<std::size_t>(axis)]) continue;
       loss += 2.2 * source.sizes.max_radius() / (space.box.hi[axis] - space.box.lo[axis]);
     }
-    for (const Hole& hole : space.holes) {
-      loss += (solid_volume(hole.radius + source.sizes.max_radius(), dimension) -
-               solid_volume(hole.radius, dimension)) /
-              whole;
-    }
+    std::vector<Hole> grown = space.holes;
+    for (Hole& hole : grown) hole.radius += source.sizes.max_radius();
+    loss += (hole_volume(space.box, grown) - hole_volume(space.box, space.holes)) / whole;
   }
   const double densest = random_close_fraction(source.sizes, dimension);
   CounterRandom random(source.seed, kPackStream);
@@ -258,7 +271,7 @@ std::vector<Grain> pack_tiled(const PackSpace& space, const SizeDistribution& si
 
 std::vector<Grain> make_packing(const Model& model, const PackingSource& source,
                                 const SourcePlace& place) {
-  const PackSpace space{box_of(model, source.region), source.holes};
+  const PackSpace space = space_of(model, source);
   for (int axis = 0; axis < model.dimension; ++axis) {
     const double length = source.region.hi[axis] - source.region.lo[axis];
     if (length >= 2.0 * source.sizes.max_radius()) continue;
@@ -273,6 +286,9 @@ std::vector<Grain> make_packing(const Model& model, const PackingSource& source,
     throw InputError(place, fmt::format("the packing would have {:.3g} particles", wanted),
                      "at most 1e9: larger radii or a smaller region");
   }
+  if (!(space.volume() > 0.0))
+    throw InputError(place, "the holes of this packing leave no room in its region",
+                     "make them smaller, or the region larger");
   if (source.count) return pack_count(space, source, fill_axis(model), place);
   return pack_fraction(space, source, place);
 }

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include <barchan/core/generators/hole_volume.hpp>
 #include <barchan/core/generators/relax.hpp>
 
 namespace barchan {
@@ -156,8 +157,7 @@ class SoftGrains {
 double PackSpace::volume() const {
   double whole = 1.0;
   for (int axis = 0; axis < box.dimension; ++axis) whole *= box.hi[axis] - box.lo[axis];
-  for (const Hole& hole : holes) whole -= solid_volume(hole.radius, box.dimension);
-  return whole;
+  return std::max(0.0, whole - hole_volume(box, holes));
 }
 
 void PackSpace::confine(Grain& grain) const {

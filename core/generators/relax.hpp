@@ -15,7 +15,7 @@ struct PackSpace {
   PairSpace box;
   std::vector<Hole> holes;
 
-  [[nodiscard]] double volume() const;  ///< of the box without the holes [m²] or [m³]
+  [[nodiscard]] double volume() const;  ///< of the box that no hole takes [m²] or [m³]
 
   /// Moves a grain to the nearest place off walls and holes, and into the box on periodic axes.
   void confine(Grain& grain) const;

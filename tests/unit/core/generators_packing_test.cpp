@@ -145,6 +145,73 @@ TEST(Packing, MeetsLooseFractionsAndKeepsHolesFree) {
   EXPECT_NEAR(fraction_of(grains, 25 - solid_volume(0.8, 2), 2), 0.6, 0.003);
 }
 
+/// Half of a hole that reaches out, and a quarter of another whose centre is a corner; two holes
+/// that are one and the same.
+TEST(Packing, CountsOfItsHolesWhatTheyTakeFromTheRegion) {
+  const Model model = model_of(2, {5, 5, 0});
+  PackingSource source = source_of({5, 5, 0}, 0.04, 0.06);
+  source.solid_fraction = 0.6;
+  source.holes = {
+      {Vec3(0, 2, 0), 1.2}, {Vec3(5, 5, 0), 1.5}, {Vec3(3, 2, 0), 0.8}, {Vec3(3, 2, 0), 0.8}};
+
+  const std::vector<Grain> grains = make_packing(model, source, {});
+
+  expect_sound(grains, model, source);
+  const double taken = solid_volume(1.2, 2) / 2 + solid_volume(1.5, 2) / 4 + solid_volume(0.8, 2);
+  EXPECT_NEAR(fraction_of(grains, 25 - taken, 2), 0.6, 0.003);
+}
+
+TEST(Packing, OfSpheresCountsHalfAHoleAsHalf) {
+  const Model model = model_of(3, {6, 6, 6});
+  PackingSource source = source_of({6, 6, 6}, 0.18, 0.22);
+  source.solid_fraction = 0.5;
+  source.holes = {{Vec3(3, 3, 0), 2.0}, {Vec3(3, 3, 0.5), 1.0}};
+
+  const std::vector<Grain> grains = make_packing(model, source, {});
+
+  expect_sound(grains, model, source);
+  EXPECT_NEAR(fraction_of(grains, 216 - solid_volume(2.0, 3) / 2, 3), 0.5, 0.0025);
+}
+
+/// Also where a counted packing fills a part of the region only, which does not wrap.
+TEST(Packing, KeepsTheImagesOfHolesFree) {
+  Model model = model_of(2, {5, 5, 0});
+  model.domain.periodic = {true, true, false};
+  PackingSource source = source_of({5, 5, 0}, 0.04, 0.06);
+  source.count = 1200;
+  source.holes = {{Vec3(2, 4.8, 0), 1.0}};
+  const PairSpace around{2, model.domain.lo, model.domain.hi, model.domain.periodic};
+  const auto expect_free = [&](const std::vector<Grain>& grains) {
+    for (const Grain& grain : grains) {
+      const double distance = around.difference(grain.position, source.holes[0].center).norm();
+      ASSERT_GT(distance, (1 - 2e-3) * grain.radius + 1.0) << grain.position.transpose();
+    }
+  };
+
+  const std::vector<Grain> counted = make_packing(model, source, {});
+  EXPECT_EQ(counted.size(), 1200u);
+  expect_free(counted);
+
+  source.count.reset();
+  source.solid_fraction = 0.6;
+  source.region.hi = Vec3(5, 2.5, 0);
+  const std::vector<Grain> lower = make_packing(model, source, {});
+  expect_free(lower);
+  const double cap = std::acos(0.2) - 0.2 * std::sqrt(1 - 0.2 * 0.2);
+  EXPECT_NEAR(fraction_of(lower, 12.5 - cap, 2), 0.6, 0.003);
+}
+
+TEST(Packing, RefusesHolesThatLeaveNoRoom) {
+  const Model model = model_of(2, {1, 1, 0});
+  PackingSource source = source_of({1, 1, 0}, 0.04, 0.06);
+  source.holes = {{Vec3(0, 0, 0), 2}};
+  for (const bool counts : {false, true}) {
+    source.count = counts ? std::optional<std::int64_t>(10) : std::nullopt;
+    source.solid_fraction = counts ? std::nullopt : std::optional(0.5);
+    EXPECT_THROW((void)make_packing(model, source, {}), InputError);
+  }
+}
+
 TEST(Packing, HasNoGrossGaps) {
   const Model model = model_of(2, {5, 5, 0});
   PackingSource source = source_of({5, 5, 0}, 0.04, 0.06);
