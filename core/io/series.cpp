@@ -118,12 +118,15 @@ SeriesWriter SeriesWriter::resume(const std::string& path,
   return series;
 }
 
-void SeriesWriter::append(const SeriesRow& row, std::span<const double> further) {
+void SeriesWriter::append(const SeriesRow& row, std::span<const std::optional<double>> further) {
   if (further.size() != num_further_)
     throw std::logic_error("series: one value per further column is needed");
   std::string text = fmt::format("{},{:.17g},{:.17g},{},{:.17g}", row.step, row.time,
                                  row.kinetic_energy, row.contacts, row.max_overlap);
-  for (const double value : further) fmt::format_to(std::back_inserter(text), ",{:.17g}", value);
+  for (const std::optional<double>& value : further) {
+    text.push_back(',');
+    if (value) fmt::format_to(std::back_inserter(text), "{:.17g}", *value);
+  }
   put(text + "\n");
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -50,9 +51,9 @@ class SeriesWriter {
   /// What was odd about the rows that were kept, with the file's name; empty where nothing was.
   [[nodiscard]] std::string damage(std::int64_t restart, std::int64_t interval) const;
 
-  /// @pre further has one value for each further column
+  /// @param further  one value for each further column; none leaves its cell empty
   /// @throws RunError also when somebody else removed or changed the file meanwhile
-  void append(const SeriesRow& row, std::span<const double> further);
+  void append(const SeriesRow& row, std::span<const std::optional<double>> further);
 
  private:
   SeriesWriter(std::string path, std::size_t num_further, const char* mode);

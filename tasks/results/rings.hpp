@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,7 +16,6 @@ namespace barchan {
 struct Ring {
   std::string name;
   std::int64_t first_id = 0, last_id = 0;
-  Vec3 center = Vec3::Zero();  ///< at the start [m]
 };
 
 /// The rings of a deck: ring1, ring2, ... @param begins  see make_particles
@@ -24,9 +24,9 @@ struct Ring {
                                            const ParticleSet& particles);
 
 /// Extent of every ring, largest less smallest coordinate of its disks' centres: x and y of the
-/// first, of the second, … [m]. Across a periodic border by the image nearest to the ring's first
-/// centre. Collective.
-[[nodiscard]] std::vector<double> ring_diameters(const Simulation& simulation,
-                                                 std::span<const Ring> rings);
+/// first, of the second, … [m]. Along a periodic axis the shortest stretch that holds all centres.
+/// None where no disk of the ring is left. Collective.
+[[nodiscard]] std::vector<std::optional<double>> ring_diameters(const Simulation& simulation,
+                                                                std::span<const Ring> rings);
 
 }  // namespace barchan

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cctype>
+#include <set>
 
 #include <barchan/tasks/results/agree.hpp>
 
@@ -24,9 +25,10 @@ std::vector<std::string> columns_of(const Model& model, const std::vector<Ring>&
   for (const char* name : {"bonds", "broken_bonds", "max_speed", "stage"})
     columns.emplace_back(name);
   if (model.domain.outside == OutsidePolicy::Delete) columns.emplace_back("particles");
-  for (const WallSpec& wall : model.walls) {
-    add_vector(column_name(wall.name) + "_force");
-    if (moves(wall)) add_vector(column_name(wall.name) + "_position");
+  const std::vector<std::string> names = wall_columns(model.walls);
+  for (std::size_t w = 0; w < model.walls.size(); ++w) {
+    add_vector(names[w] + "_force");
+    if (moves(model.walls[w])) add_vector(names[w] + "_position");
   }
   for (const Ring& ring : rings) {
     columns.push_back(ring.name + "_diameter_x");
@@ -35,20 +37,21 @@ std::vector<std::string> columns_of(const Model& model, const std::vector<Ring>&
   return columns;
 }
 
-std::vector<double> values_of(const Simulation& simulation, const Measures& m,
-                              const std::vector<double>& diameters) {
+using Cells = std::vector<std::optional<double>>;
+
+Cells values_of(const Simulation& simulation, const Measures& m, const Cells& diameters) {
   const Model& model = simulation.model();
-  std::vector<double> values{m.elastic.value(), m.gravitational.value()};
-  for (int c = 0; c < model.dimension; ++c) values.push_back(m.momentum[c].value());
+  Cells values{m.elastic.value(), m.gravitational.value()};
+  for (int c = 0; c < model.dimension; ++c) values.emplace_back(m.momentum[c].value());
   values.insert(values.end(), {static_cast<double>(m.bonds), static_cast<double>(m.broken_bonds),
                                m.max_speed, static_cast<double>(simulation.stage() + 1)});
   if (model.domain.outside == OutsidePolicy::Delete)
-    values.push_back(static_cast<double>(simulation.num_particles()));
+    values.emplace_back(static_cast<double>(simulation.num_particles()));
   const auto walls = simulation.walls();
   for (std::size_t w = 0; w < walls.size(); ++w) {
-    for (int c = 0; c < model.dimension; ++c) values.push_back(walls[w].force[c]);
+    for (int c = 0; c < model.dimension; ++c) values.emplace_back(walls[w].force[c]);
     if (!moves(model.walls[w])) continue;
-    for (int c = 0; c < model.dimension; ++c) values.push_back(walls[w].point[c]);
+    for (int c = 0; c < model.dimension; ++c) values.emplace_back(walls[w].point[c]);
   }
   values.insert(values.end(), diameters.begin(), diameters.end());
   return values;
@@ -63,6 +66,22 @@ std::string column_name(const std::string& name) {
     if (!is_plain) c = '_';
   }
   return column;
+}
+
+std::vector<std::string> wall_columns(std::span<const WallSpec> walls) {
+  std::vector<std::string> columns;
+  std::set<std::string> taken;
+  for (const WallSpec& wall : walls) {
+    columns.push_back(column_name(wall.name));
+    if (columns.back() == wall.name) taken.insert(wall.name);
+  }
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    if (columns[w] == walls[w].name) continue;
+    const std::string stem = columns[w];
+    for (int number = 2; !taken.insert(columns[w]).second; ++number)
+      columns[w] = stem + "_" + std::to_string(number);
+  }
+  return columns;
 }
 
 SeriesTable::SeriesTable(const Simulation& simulation, const std::string& path,
@@ -82,7 +101,7 @@ std::string SeriesTable::damage(const Simulation& simulation, std::int64_t inter
 
 Measures SeriesTable::append(Simulation& simulation) {
   const Measures m = simulation.measure();
-  const std::vector<double> diameters = ring_diameters(simulation, rings_);
+  const Cells diameters = ring_diameters(simulation, rings_);
   agree(simulation.communicator(), [&] {
     if (!writer_) return;
     writer_->append(

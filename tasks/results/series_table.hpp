@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,5 +35,9 @@ class SeriesTable {
 
 /// A name as a column's: letters, digits, - and _; all else becomes _.
 [[nodiscard]] std::string column_name(const std::string& name);
+
+/// What the columns of each wall begin with: its column_name, and where two walls would get the
+/// same, _2, _3, ... behind it. A wall whose name is a column's as it stands keeps it.
+[[nodiscard]] std::vector<std::string> wall_columns(std::span<const WallSpec> walls);
 
 }  // namespace barchan

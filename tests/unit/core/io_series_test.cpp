@@ -11,6 +11,8 @@
 namespace barchan {
 namespace {
 
+using Cells = std::vector<std::optional<double>>;
+
 class Series : public ::testing::Test {
  protected:
   test::TemporaryFolder folder_;
@@ -20,22 +22,29 @@ class Series : public ::testing::Test {
 
 TEST_F(Series, HasEachRowOnDiskAtOnce) {
   SeriesWriter series = SeriesWriter::create(path_, columns_);
-  series.append({100, 0.02, 1.0 / 3.0, 12, 1e-5}, std::vector<double>{2.5});
+  series.append({100, 0.02, 1.0 / 3.0, 12, 1e-5}, Cells{2.5});
 
   EXPECT_EQ(read_text_file(path_),
             "step,time,kinetic_energy,contacts,max_overlap,plate_y\n"
             "100,0.02,0.33333333333333331,12,1.0000000000000001e-05,2.5\n");
 }
 
+TEST_F(Series, LeavesACellEmptyWhereThereIsNoValue) {
+  columns_.emplace_back("plate_z");
+  SeriesWriter series = SeriesWriter::create(path_, columns_);
+  series.append({100, 0, 0, 0, 0}, Cells{std::nullopt, 1.0});
+
+  EXPECT_TRUE(read_text_file(path_).ends_with("\n100,0,0,0,0,,1\n"));
+}
+
 TEST_F(Series, DropsRowsAfterTheRestartAndUnfinishedOnes) {
   {
     SeriesWriter series = SeriesWriter::create(path_, columns_);
-    for (const int step : {0, 100, 200, 300})
-      series.append({step, 0, 0, 0, 0}, std::vector<double>{0});
+    for (const int step : {0, 100, 200, 300}) series.append({step, 0, 0, 0, 0}, Cells{0.0});
   }
   {
     SeriesWriter series = SeriesWriter::resume(path_, columns_, 200);
-    series.append({250, 0, 0, 0, 0}, std::vector<double>{1});
+    series.append({250, 0, 0, 0, 0}, Cells{1.0});
   }
   EXPECT_EQ(read_text_file(path_),
             "step,time,kinetic_energy,contacts,max_overlap,plate_y\n0,0,0,0,0,0\n100,0,0,0,0,"
