@@ -6,8 +6,10 @@ import sys
 import time
 
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from work_folder import leave_tree  # noqa: E402
 
-COMMAND = sys.argv[1] if len(sys.argv) > 1 else os.environ["BARCHAN_COMMAND"]
+COMMAND = os.path.abspath(sys.argv[1] if len(sys.argv) > 1 else os.environ["BARCHAN_COMMAND"])
+leave_tree(os.path.splitext(os.path.basename(sys.argv[0]))[0])
 SECONDS = 240  # for anything to end, however slow the machine
 
 DECK = """
