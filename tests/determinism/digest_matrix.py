@@ -17,7 +17,9 @@ import subprocess
 import sys
 import time
 
-SOURCE = pathlib.Path(os.environ.get("BARCHAN_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
+from work_folder import SOURCE, leave_tree  # noqa: E402
+
 RANKS = (1, 2, 3, 4)
 THREADS = (1, 2)
 SCHEDULES = ("overlap", "sequential")
@@ -90,6 +92,8 @@ def main():
     parser.add_argument("--full", action="store_true", help="the whole matrix: hours on a small machine")
     parser.add_argument("--list", action="store_true", help="only say what would be run")
     options = parser.parse_args()
+    options.command = os.path.abspath(options.command)
+    leave_tree("digest_matrix")
     exchanges = choices_of(options.command, "exchange")
     exchanges = [name for name in exchanges if name not in ("auto", "replay")]
     widths = [w for w in choices_of(options.command, "vector") if w != "auto" and has_width(options.command, w)]

@@ -21,8 +21,8 @@ import time
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "support"))
 from processes import children_of, name_of, output_after_kill  # noqa: E402
+from work_folder import SOURCE, leave_tree  # noqa: E402
 
-SOURCE = pathlib.Path(os.environ.get("BARCHAN_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
 STEPS, EVERY = 3000, 200
 # The plate comes down early, so that all that a checkpoint holds is there when ranks are killed.
 OPTIONS = ["--set", "stage.settle.max_time=0.1", "--set", "output.picture=false",
@@ -211,6 +211,8 @@ def main():
     parser.add_argument("--steps", type=int, default=STEPS, help="of the runs that are killed")
     parser.add_argument("--seed", type=int, default=random.randrange(10**6))
     arguments = parser.parse_args()
+    arguments.command = os.path.abspath(arguments.command)
+    leave_tree("restart_test")
     rng = random.Random(arguments.seed)
     print("seed", arguments.seed)
     shutil.rmtree("whole", ignore_errors=True)

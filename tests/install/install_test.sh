@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs, moves the installed tree, then builds and runs the embedding example from that tree alone.
 set -eu
+[[ $PWD != "$BARCHAN_SOURCE" ]] || { echo "run this in a folder of its own"; exit 1; }
 work=$PWD
 rm -rf "$work"/staged "$work"/installed "$work"/embed "$work"/embed_build
 

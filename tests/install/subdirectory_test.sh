@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # A project that adds this one as a subdirectory configures, gets no tests or command, and compiles against it.
 set -eu
+[[ $PWD != "$BARCHAN_SOURCE" ]] || { echo "run this in a folder of its own: it removes ./build"; exit 1; }
 rm -rf build
 cmake -S "$BARCHAN_SOURCE/tests/install/subdirectory" -B build -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DBARCHAN_SOURCE="$BARCHAN_SOURCE"
