@@ -8,7 +8,7 @@
 #include <barchan/app/commands.hpp>
 #include <barchan/app/loaded_deck.hpp>
 #include <barchan/app/readable.hpp>
-#include <barchan/tasks/simulation.hpp>
+#include <barchan/tasks/memory_estimate.hpp>
 #include <barchan/tasks/stability.hpp>
 #include <barchan/tasks/strip_plan.hpp>
 
@@ -108,20 +108,11 @@ void print_walls(const Model& model) {
   std::printf("Walls:\n%s", table(rows, 3).c_str());
 }
 
-/// Bytes that the engine has for these particles on one rank.
-double engine_bytes(const LoadedDeck& loaded) {
-  Model model = loaded.deck.model;
-  model.time.allow_unstable = true;
-  RunOptions options;
-  options.threads = 1;
-  const Simulation simulation(model, loaded.particles, Communicator::self(), options);
-  return static_cast<double>(simulation.memory_bytes());
-}
-
 void print_strips(const LoadedDeck& loaded, int wanted) {
   const StripPlan plan = plan_strips(loaded.deck.model, loaded.particles);
   const auto num_particles = static_cast<double>(loaded.particles.particles.size());
-  const double bytes = engine_bytes(loaded) / num_particles;
+  const double bytes =
+      static_cast<double>(memory_estimate(loaded.deck.model, loaded.particles)) / num_particles;
   const auto all =
       static_cast<double>(loaded.particles.particles.capacity() * sizeof(ParticleData) +
                           loaded.particles.bonds.capacity() * sizeof(BondData));

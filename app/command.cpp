@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <exception>
-#include <optional>
 
 #include <barchan/app/command_line.hpp>
 #include <barchan/app/commands.hpp>
@@ -12,42 +11,38 @@
 namespace barchan::app {
 namespace {
 
-void say(const CommandLine& line, bool is_root) {
-  if (!is_root) return;
+int say(const CommandLine& line) {
   std::fputs(line.text.c_str(), line.status == kDone ? stdout : stderr);
   std::fflush(nullptr);
+  return line.status;
 }
 
-/// Commands that need one process: on rank 0, and the others hear how it went.
-int on_root(const Communicator* world, const CommandLine& line) {
-  if (world == nullptr) return with_verdict(nullptr, [&] { run_local(line); });
-  return with_verdict(world, [&] { run_local_on_root(*world, line); });
+void run_local(const CommandLine& line) {
+  if (line.kind == CommandKind::Check) return check_deck(line.check);
+  if (line.kind == CommandKind::Info) return show_info(line.info_path);
+  convert(line.convert);
+}
+
+/// What one process does alone starts no MPI: it works where MPI does not. Among ranks the first
+/// one does it, and the launcher passes on how it ended.
+int run_alone(const CommandLine& line) {
+  if (rank_by_launcher() > 0) return kDone;
+  if (line.kind == CommandKind::Text) return say(line);
+  return with_verdict(nullptr, [&] { run_local(line); });
 }
 
 }  // namespace
 
 int run_barchan(int argc, char** argv) {
   const CommandLine line = parse_command_line(argc, argv);
-  const bool is_local = line.kind != CommandKind::Run && line.kind != CommandKind::Check &&
-                        line.kind != CommandKind::Probe;
-  // Among other ranks MPI must be joined even for a line of help, so that one of them prints.
-  if (is_local && !is_started_as_rank()) {
-    if (line.kind != CommandKind::Text) return on_root(nullptr, line);
-    say(line, true);
-    return line.status;
-  }
+  if (line.kind != CommandKind::Run && line.kind != CommandKind::Probe) return run_alone(line);
   try {
     const MpiSession session(argc, argv);
     const Communicator world = Communicator::world();
-    if (line.kind == CommandKind::Text) {
-      say(line, world.is_root());
-      return line.status;
-    }
-    if (line.kind == CommandKind::Run)
-      return with_verdict(&world, [&] { run_deck(world, line.run); });
-    if (line.kind == CommandKind::Probe)
-      return with_verdict(&world, [&] { probe(world, line.probe); });
-    return on_root(&world, line);
+    return with_verdict(&world, [&] {
+      if (line.kind == CommandKind::Run) return run_deck(world, line.run);
+      probe(world, line.probe);
+    });
   } catch (const std::exception& e) {
     std::fprintf(stderr, "barchan: %s\n", e.what());
     return kFailed;

@@ -10,17 +10,14 @@ namespace barchan::app {
 /// `barchan run`. Collective. Errors: InputError, the same on every rank; RunError.
 void run_deck(const Communicator& world, const RunArguments& arguments);
 
-/// `barchan check`, on one rank of however many. Errors: InputError.
+/// `barchan check`. Local, without MPI. Errors: InputError.
 void check_deck(const CheckArguments& arguments);
 
 /// `barchan probe`: what every exchange costs between these ranks. Collective. Errors: InputError.
 void probe(const Communicator& world, const ProbeArguments& arguments);
 
+/// `barchan info` and `barchan convert`. Local, without MPI. Errors: InputError.
 void show_info(const std::string& path);
 void convert(const ConvertArguments& arguments);
-
-/// `info` and `convert`, and `check`: what one process does alone.
-void run_local(const CommandLine& line);
-void run_local_on_root(const Communicator& world, const CommandLine& line);
 
 }  // namespace barchan::app

@@ -77,11 +77,11 @@ std::string mpi_thread_level() {
   return level == MPI_THREAD_FUNNELED ? "funneled" : "single";
 }
 
-bool is_started_as_rank() {
-  for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMIX_RANK", "PMI_RANK"}) {
-    if (std::getenv(name) != nullptr) return true;
+int rank_by_launcher() {
+  for (const char* name : {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"}) {
+    if (const char* rank = std::getenv(name)) return std::atoi(rank);
   }
-  return false;
+  return 0;
 }
 
 bool is_mpi_initialized() {

@@ -23,7 +23,7 @@ class MpiSession {
 
 std::string mpi_library_version();  ///< first line of the library's own version text
 std::string mpi_thread_level();     ///< "single", "funneled", "serialized" or "multiple"
-bool is_started_as_rank();  ///< by mpirun or another starter of ranks; may be asked before MPI_Init
+int rank_by_launcher();     ///< as mpirun or srun told this process without MPI; 0: nothing said
 bool is_mpi_initialized();  ///< between MPI_Init and MPI_Finalize
 
 }  // namespace barchan

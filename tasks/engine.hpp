@@ -11,6 +11,7 @@
 #include <barchan/tasks/simulation.hpp>
 #include <barchan/tasks/step_graph.hpp>
 #include <barchan/tasks/strip.hpp>
+#include <barchan/tasks/world_setup.hpp>
 
 namespace barchan {
 
@@ -52,13 +53,6 @@ class Simulation::Engine {
   LeftDomain left_;
   std::function<void(std::span<const Departure>)> tell_departures_;
   std::vector<Note> notes_;
-};
-
-/// What the particles of the start determine, and all lists with it.
-struct WorldScale {
-  double skin = 0.0, reach = 0.0;  ///< [m]
-  std::int64_t num_particles = 0;
-  bool has_bonds = false;
 };
 
 /// The time loop: when to rebuild, which stage it is, how walls move. One step itself is StepGraph.

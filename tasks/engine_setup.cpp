@@ -30,24 +30,9 @@ Simulation::EngineOf<Dim>::EngineOf(const Model& model, const ParticleSet& parti
 template <int Dim>
 void Simulation::EngineOf<Dim>::make_world(const WorldScale& scale) {
   scale_ = scale;
-  world_.skin = scale.skin;
-  world_.dt = model_.time.step;
-  world_.search = options_.search.value_or(model_.search.kind);
-  world_.num_particles = scale.num_particles;
-  world_.grid = Grid<Dim>(model_.domain, scale.reach, scale.num_particles);
-  world_.laws = LawTable(model_.contacts);
-  world_.kernels = make_kernels(Dim, barchan::vector_width(options_.vector), world_.laws,
-                                scale.has_bonds, world_.grid.box());
-  world_.bond_laws = model_.bond_laws;
-  world_.wall_specs = model_.walls;
-  for (const WallSpec& spec : model_.walls) {
-    WallState state;
-    state.point = spec.point;
-    state.velocity = spec.velocity;
-    state.is_active = spec.from_stage <= 0;
-    world_.walls.push_back(state);
-    walls_at_rebuild_.push_back(spec.point);
-  }
+  set_up(world_, model_, scale, barchan::vector_width(options_.vector));
+  if (options_.search) world_.search = *options_.search;
+  for (const WallSpec& spec : model_.walls) walls_at_rebuild_.push_back(spec.point);
 }
 
 template <int Dim>
