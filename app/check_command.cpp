@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <barchan/app/check_contacts.hpp>
 #include <barchan/app/commands.hpp>
 #include <barchan/app/loaded_deck.hpp>
 #include <barchan/app/readable.hpp>
@@ -65,29 +66,6 @@ void print_particles(const LoadedDeck& loaded) {
               model.dimension == 2 ? "disks" : "spheres",
               grouped(static_cast<std::int64_t>(loaded.particles.bonds.size())).c_str(),
               table(rows, 2).c_str());
-}
-
-std::string dashpot_text(const Dashpot& d) {
-  if (d.rate > 0.0) return fmt::format("{:.4g} · m/s", d.rate);
-  if (d.critical > 0.0) return fmt::format("{:.4g} · √m", d.critical);
-  return fmt::format("{:.4g}", d.constant);
-}
-
-void print_contacts(const Model& model) {
-  Rows rows{{"pair", "kn [N/m]", "kt [N/m]", "cn [N·s/m]", "ct [N·s/m]", "friction"}};
-  const int n = static_cast<int>(model.materials.size());
-  for (int a = 0; a < n; ++a) {
-    for (int b = a; b < n; ++b) {
-      const ContactConstants& law = model.contacts.at(a, b);
-      if (law.kn == 0.0) continue;  // a pair that cannot meet
-      rows.push_back({model.materials[static_cast<std::size_t>(a)].name + "–" +
-                          model.materials[static_cast<std::size_t>(b)].name,
-                      fmt::format("{:.4g}", law.kn), fmt::format("{:.4g}", law.kt),
-                      dashpot_text(law.cn), dashpot_text(law.ct), fmt::format("{:.4g}", law.mu)});
-    }
-  }
-  std::printf("Contacts:%s\n%s", model.contacts.no_tension ? "" : " (normal forces may pull)",
-              table(rows).c_str());
 }
 
 void print_walls(const Model& model) {
@@ -189,7 +167,7 @@ void check_deck(const CheckArguments& arguments) {
   std::printf("%s%s%s\n", arguments.deck.c_str(), model.title.empty() ? "" : ": ",
               model.title.c_str());
   print_particles(loaded);
-  print_contacts(model);
+  print_contacts(loaded);
   print_walls(model);
   print_stages(model);
   print_step(model, limits);

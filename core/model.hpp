@@ -28,7 +28,7 @@ struct Domain {
 
 /// One dashpot: coefficient = constant + rate·m_eff + critical·sqrt(m_eff).
 /// A deck gives `cn` (constant [N·s/m]), a mass-proportional rate [1/s], or a restitution, which
-/// becomes the `critical` factor 2·zeta·sqrt(kn) with zeta from e = exp(-pi·zeta/sqrt(1-zeta²)).
+/// becomes the `critical` factor 2·zeta·sqrt(kn); restitution.hpp has its zeta.
 struct Dashpot {
   double constant = 0.0;  ///< [N·s/m]
   double rate = 0.0;      ///< [1/s]
@@ -41,7 +41,9 @@ struct ContactConstants {
   double kt = 0.0;  ///< tangential stiffness [N/m]
   Dashpot cn;
   Dashpot ct;
-  double mu = 0.0;  ///< Coulomb friction
+  double mu = 0.0;                    ///< Coulomb friction
+  std::optional<double> restitution;  ///< where cn.critical comes from one; kernels read cn alone
+  bool is_mixed = false;              ///< from the constants of two materials
 };
 
 struct Material {

@@ -1,12 +1,12 @@
 // Materials and the contact constants of every pair that can meet.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include <fmt/format.h>
 
 #include <barchan/core/deck/readers.hpp>
+#include <barchan/core/restitution.hpp>
 
 namespace barchan::deck {
 
@@ -14,23 +14,18 @@ namespace {
 
 constexpr int kMaxMaterials = 1000;
 
-/// critical = 2·zeta·sqrt(kn), zeta from e = exp(-pi·zeta/sqrt(1-zeta²)).
-double critical_factor(double restitution, double kn) {
-  const double decay = -std::log(restitution);
-  const double zeta = decay / std::hypot(decay, std::numbers::pi);
-  return 2.0 * zeta * std::sqrt(kn);
-}
+struct Rules {
+  bool is_mixed = true;    ///< pairs without a [[pair]] take the constants of their materials
+  bool no_tension = true;  ///< the clamp of the run
+};
 
-Dashpot read_normal_dashpot(const TableReader& table, double kn) {
+Dashpot read_normal_dashpot(const TableReader& table) {
   table.has_one_of("normal_damping", "normal_damping_rate");
   table.has_one_of("normal_damping", "restitution");
   table.has_one_of("normal_damping_rate", "restitution");
   Dashpot dashpot;
   dashpot.constant = table.number("normal_damping");
   dashpot.rate = table.optional_number("normal_damping_rate").value_or(0.0);
-  if (const auto restitution = table.optional_number("restitution")) {
-    dashpot.critical = critical_factor(*restitution, kn);
-  }
   return dashpot;
 }
 
@@ -46,7 +41,8 @@ ContactConstants read_constants(const TableReader& table) {
   ContactConstants constants;
   constants.kn = table.number("normal_stiffness");
   constants.kt = table.number("tangential_stiffness");
-  constants.cn = read_normal_dashpot(table, constants.kn);
+  constants.cn = read_normal_dashpot(table);
+  constants.restitution = table.optional_number("restitution");
   constants.ct = read_tangential_dashpot(table);
   constants.mu = table.number("friction");
   return constants;
@@ -86,9 +82,27 @@ std::optional<Dashpot> in_series(const Dashpot& a, const Dashpot& b) {
 std::optional<ContactConstants> mix(const ContactConstants& a, const ContactConstants& b) {
   const auto cn = in_series(a.cn, b.cn);
   const auto ct = in_series(a.ct, b.ct);
-  if (!cn || !ct) return std::nullopt;
-  return ContactConstants{in_series(a.kn, b.kn), in_series(a.kt, b.kt), *cn, *ct,
-                          std::min(a.mu, b.mu)};
+  const bool of_two_kinds = (a.restitution && !is_zero(b.cn)) || (b.restitution && !is_zero(a.cn));
+  if (!cn || !ct || of_two_kinds) return std::nullopt;
+  ContactConstants mixed;
+  mixed.kn = in_series(a.kn, b.kn);
+  mixed.kt = in_series(a.kt, b.kt);
+  mixed.cn = *cn;
+  mixed.ct = *ct;
+  mixed.mu = std::min(a.mu, b.mu);
+  if (a.restitution && b.restitution)
+    mixed.restitution = std::sqrt(*a.restitution) * std::sqrt(*b.restitution);
+  mixed.is_mixed = true;
+  return mixed;
+}
+
+/// Turns a restitution into the dashpot that rebounds with it.
+ContactConstants solved(ContactConstants constants, bool no_tension) {
+  if (constants.restitution) {
+    constants.cn.critical =
+        2.0 * damping_ratio_for(*constants.restitution, no_tension) * std::sqrt(constants.kn);
+  }
+  return constants;
 }
 
 /// Who can touch whom: walls never touch walls.
@@ -138,17 +152,18 @@ class ContactBuilder {
       read_pair(TableReader(*node, root_.dimension(), "[[pair]]"));
   }
 
-  ContactTable build(bool is_mixed) const {
+  ContactTable build(const Rules& rules) const {
     const Users users = find_users(draft_.deck);
     ContactTable table;
     table.num_materials = static_cast<int>(num_);
+    table.no_tension = rules.no_tension;
     table.constants.resize(num_ * num_);
     for (std::size_t a = 0; a < num_; ++a) {
       for (std::size_t b = a; b < num_; ++b) {
-        const auto constants = find(a, b, is_mixed && users.can_meet(a, b));
-        if (!constants && users.can_meet(a, b)) fail_missing(a, b, is_mixed);
+        const auto constants = find(a, b, rules.is_mixed && users.can_meet(a, b));
+        if (!constants && users.can_meet(a, b)) fail_missing(a, b, rules.is_mixed);
         table.constants[a * num_ + b] = table.constants[b * num_ + a] =
-            constants.value_or(ContactConstants{});
+            solved(constants.value_or(ContactConstants{}), rules.no_tension);
       }
     }
     return table;
@@ -235,15 +250,13 @@ void read_contacts(const TableReader& root, DeckDraft& draft) {
   ContactBuilder builder(root, draft);
   builder.read_own();
   builder.read_pairs();
-  bool is_mixed = true;
-  bool no_tension = true;
+  Rules rules;
   if (const Node* node = root.table("contact")) {
     const TableReader table(*node, root.dimension(), "[contact]");
-    is_mixed = table.string("mixing") == "harmonic";
-    no_tension = table.boolean("no_tension");
+    rules.is_mixed = table.string("mixing") == "harmonic";
+    rules.no_tension = table.boolean("no_tension");
   }
-  draft.deck.model.contacts = builder.build(is_mixed);
-  draft.deck.model.contacts.no_tension = no_tension;
+  draft.deck.model.contacts = builder.build(rules);
 }
 
 }  // namespace barchan::deck

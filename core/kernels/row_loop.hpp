@@ -4,6 +4,7 @@
 #include <limits>
 
 #include <barchan/core/kernels/row_job.hpp>
+#include <barchan/core/layout.hpp>
 
 namespace barchan::kernels {
 
@@ -18,7 +19,7 @@ template <class Q, bool Damped>
 
 template <class Q, int Dim, bool Damped>
 RowSpeeds advance_rows(const RowJob& job) {
-  const double k = job.kick;
+  const double k = job.kick, turn = Layout<Dim>::kSpinGain * k;
   auto top = Q::set(0.0);
   const auto alpha = Q::set(job.local_damping);
   const auto zero = Q::set(0.0);
@@ -26,7 +27,7 @@ RowSpeeds advance_rows(const RowJob& job) {
   const auto limit = Q::of(most, most, Dim == 3 ? most : any, any);
   auto fast = Q::beyond(zero, zero);
   if constexpr (Dim == 2) {
-    const auto gain = Q::of(k, k, 2.0 * k, 0.0), drift = Q::of(job.dt, job.dt, 0.0, 0.0);
+    const auto gain = Q::of(k, k, turn, 0.0), drift = Q::of(job.dt, job.dt, 0.0, 0.0);
     const auto gravity = Q::of(job.gravity[0] * k, job.gravity[1] * k, 0.0, 0.0);
     for (std::int32_t i = job.begin; i < job.end; ++i) {
       double *x = job.motion + 8 * static_cast<std::int64_t>(i),
@@ -41,7 +42,7 @@ RowSpeeds advance_rows(const RowJob& job) {
     }
   } else {
     const auto gain = Q::of(k, k, k, 0.0), drift = Q::of(job.dt, job.dt, job.dt, 0.0);
-    const auto twist = Q::of(2.5 * k, 2.5 * k, 2.5 * k, 0.0);
+    const auto twist = Q::of(turn, turn, turn, 0.0);
     const auto gravity = Q::of(job.gravity[0] * k, job.gravity[1] * k, job.gravity[2] * k, 0.0);
     for (std::int32_t i = job.begin; i < job.end; ++i) {
       double *x = job.motion + 8 * static_cast<std::int64_t>(i),

@@ -27,6 +27,22 @@ def check_check():
     expect("Warning" in done.stdout, f"check: no warning above a fifth: {done.stdout}")
 
 
+def check_restitutions():
+    glass = '[[material]]\nname = "glass"\ndensity = 2000.0\nnormal_stiffness = 1e5\nrestitution = 0.18\n'
+    steel = '[[material]]\nname = "steel"\ndensity = 7000.0\nnormal_stiffness = 1e5\nnormal_damping = 300.0\n'
+    own = '[[pair]]\nmaterials = ["sand", "steel"]\nnormal_stiffness = 1e5\n'
+    own += '[[pair]]\nmaterials = ["glass", "steel"]\nnormal_stiffness = 1e5\nrestitution = 0.75\n'
+    ball = '[[particles]]\nkind = "list"\nmaterial = "{}"\nparticle = [{{ position = [{}, 0.9], radius = 0.04 }}]\n'
+    write("pairs.toml", DECK + glass + steel + own + ball.format("glass", 1.0) + ball.format("steel", 2.0))
+    done = run("check", "pairs.toml")
+    expect(done.returncode == 0, f"check: {done.stderr}")
+    lines = {line.split()[0]: " ".join(line.split()[1:]) for line in done.stdout.splitlines() if "–" in line}
+    for pair, text in [("sand–sand", " 0.5"), ("sand–glass", " 0.3, mixed"), ("sand–steel", " 1, of the dashpot"),
+                       ("glass–steel", " 0.75"), ("steel–steel", " 0.7176, of the dashpot")]:
+        expect(lines.get(pair, "").endswith(text), f"{pair}: no '{text}' in {done.stdout}")
+    expect("Warning: restitution 1, head-on collisions lose no energy: sand–steel\n" in done.stdout, done.stdout)
+
+
 def check_info():
     fresh("case.out")
     run("run", "case.toml", "--steps", "2", "--quiet", ranks=2)
@@ -59,6 +75,7 @@ def check_convert():
 
 check_help()
 check_check()
+check_restitutions()
 check_info()
 check_convert()
 finish()

@@ -189,6 +189,11 @@ INSTANTIATE_TEST_SUITE_P(
               "friction = 0.5",
               "restitution = 0.5\nnormal_damping = 1.0",
               {":13:15:", "both normal_damping and restitution"}},
+        Fault{"RestitutionBesideACoefficient",
+              "friction = 0.5\n[[material]]\nname = \"duct\"\ndensity = 250.0\n",
+              "restitution = 1.0\n[[material]]\nname = \"duct\"\ndensity = 250.0\n"
+              "normal_damping = 5.0\n",
+              {":15:8:", "'soil' and 'duct'", "different ways", "both a restitution"}},
         Fault{"EndlessStage",
               "max_time = 1.0",
               "[[stage]]\nname = \"load\"",

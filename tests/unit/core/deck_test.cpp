@@ -1,9 +1,11 @@
 #include <barchan/core/deck/deck.hpp>
 
 #include <cmath>
-#include <numbers>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <barchan/core/restitution.hpp>
 
 #include "deck_text.hpp"
 
@@ -85,12 +87,29 @@ TEST(Deck, PrefersAnExplicitPairOverMixing) {
   EXPECT_EQ(deck.model.contacts.at(1, 0).kn, 1000.0);
 }
 
-TEST(Deck, TurnsRestitutionIntoTheCriticalFactorOfItsDashpot) {
-  const Deck deck = parse_edited({{"friction = 0.5", "restitution = 0.5"}});
+TEST(Deck, TurnsRestitutionIntoTheDashpotThatReboundsWithItUnderTheClampOfTheRun) {
+  for (const bool no_tension : {true, false}) {
+    const Deck deck = parse_edited(
+        {{"friction = 0.5", "restitution = 0.5"},
+         {"[[bond]]", fmt::format("[contact]\nno_tension = {}\n[[bond]]", no_tension)}});
 
-  const double zeta = deck.model.contacts.at(0, 0).cn.critical / (2.0 * std::sqrt(55000.0));
-  EXPECT_NEAR(std::exp(-std::numbers::pi * zeta / std::sqrt(1.0 - zeta * zeta)), 0.5, 1e-14);
-  EXPECT_EQ(deck.model.contacts.at(0, 0).ct.critical, 0.0);
+    const ContactConstants& law = deck.model.contacts.at(0, 0);
+    const double zeta = law.cn.critical / (2.0 * std::sqrt(55000.0));
+    EXPECT_NEAR(restitution_at(zeta, no_tension), 0.5, 1e-14);
+    EXPECT_EQ(law.restitution, 0.5);
+    EXPECT_FALSE(law.is_mixed);
+    EXPECT_EQ(law.ct.critical, 0.0);
+  }
+}
+
+TEST(Deck, MixesTheRestitutionItself) {
+  const Deck deck = parse_edited(
+      {{"friction = 0.5", "restitution = 0.9"}, {"friction = 0.6", "restitution = 0.1"}});
+
+  const ContactConstants& law = soil_duct(deck);
+  EXPECT_NEAR(law.restitution.value(), 0.3, 1e-15);
+  EXPECT_TRUE(law.is_mixed);
+  EXPECT_NEAR(restitution_at(law.cn.critical / (2.0 * std::sqrt(law.kn)), true), 0.3, 1e-14);
 }
 
 TEST(Deck, TakesRestitutionOneAsNoDamping) {
