@@ -17,11 +17,12 @@
 
 namespace barchan::test {
 
-/// @param set  overrides such as "time.step=1e-5"
-inline Simulation simulate(std::string_view deck, const std::vector<std::string>& set = {}) {
+/// @param set  overrides such as "time.step=1e-5" @param file  of the deck; paths in it start there
+inline Simulation simulate(std::string_view deck, const std::vector<std::string>& set = {},
+                           const std::string& file = "test.toml") {
   std::vector<DeckOverride> overrides;
   for (const std::string& argument : set) overrides.push_back(parse_override(argument));
-  const Deck read = parse_deck(deck, "test.toml", overrides);
+  const Deck read = parse_deck(deck, file, overrides);
   RunOptions options;
   options.threads = 1;
   return {read.model, make_particles(read.model, read.sources), MPI_COMM_WORLD, options};
