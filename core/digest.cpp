@@ -4,6 +4,9 @@
 
 #include <array>
 #include <cstring>
+#include <vector>
+
+#include <barchan/core/bytes.hpp>
 
 namespace barchan {
 
@@ -20,6 +23,37 @@ std::uint64_t particle_digest(std::int64_t id, std::span<const double> position,
   put(velocity.data(), velocity.size_bytes());
   put(omega.data(), omega.size_bytes());
   return XXH3_64bits(bytes.data(), used);
+}
+
+std::uint64_t hash_of_bytes(std::span<const std::byte> bytes) {
+  return XXH3_64bits(bytes.data(), bytes.size());
+}
+
+std::uint64_t particle_set_hash(const ParticleSet& set) {
+  // One hash feeds the next, so that order counts and padding does not.
+  std::uint64_t hash = set.particles.size();
+  std::vector<std::byte> bytes;
+  const auto take = [&] {
+    hash = XXH3_64bits_withSeed(bytes.data(), bytes.size(), hash);
+    bytes.clear();
+  };
+  ByteWriter out(bytes);
+  for (const ParticleData& p : set.particles) {
+    out.put(p.id);
+    out.put(p.type);
+    out.put(p.fixed);
+    for (const double value : {p.radius, p.density}) out.put(value);
+    for (const Vec3* v : {&p.position, &p.velocity, &p.omega})
+      out.put_all(std::span<const double>(v->data(), 3));
+    take();
+  }
+  for (const BondData& b : set.bonds) {
+    out.put(b.id_a);
+    out.put(b.id_b);
+    out.put(b.law);
+    take();
+  }
+  return hash;
 }
 
 }  // namespace barchan

@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include <barchan/comm/mpi_session.hpp>
 #include <barchan/core/checkpoint/durable.hpp>
 #include <barchan/tasks/results/agree.hpp>
 
@@ -67,7 +68,7 @@ CheckpointKeeper::CheckpointKeeper(const Communicator& communicator, std::string
 
 CheckpointKeeper::~CheckpointKeeper() {
   try {
-    if (std::uncaught_exceptions() == num_exceptions_) wait_idle();
+    if (is_mpi_initialized() && std::uncaught_exceptions() == num_exceptions_) wait_idle();
   } catch (const std::exception&) {  // the others are gone; what is not complete is not there
   }
   join();

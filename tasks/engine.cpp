@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <barchan/comm/clock.hpp>
+#include <barchan/comm/mpi_session.hpp>
 #include <barchan/core/error.hpp>
 #include <barchan/tasks/stop_request.hpp>
 
@@ -27,6 +28,7 @@ double now() {
 template <int Dim>
 Simulation::EngineOf<Dim>::~EngineOf() {
   if (is_in_step_ || strip_ == nullptr || std::uncaught_exceptions() > 0) return;
+  if (!is_mpi_initialized()) return;  // nothing of MPI is left to be taken down
   try {
     strip_->complete_halo();
   } catch (const std::exception&) {  // the others are gone
@@ -37,10 +39,15 @@ template <int Dim>
 std::int64_t Simulation::EngineOf<Dim>::run(std::int64_t num_steps) {
   const double begin = now();
   std::int64_t done = 0;
+  stopped_ = stopped_ && num_steps == 0;
   try {
     while (done < num_steps && !stopped_) done += go_on(num_steps - done);
   } catch (const AgreedError&) {
     is_in_step_ = false;  // thrown before the step did anything
+    failure_ = std::current_exception();
+    throw;
+  } catch (...) {
+    failure_ = std::current_exception();
     throw;
   }
   loop_seconds_ += now() - begin;
@@ -139,7 +146,10 @@ void Simulation::EngineOf<Dim>::size_chunks() {
 template <int Dim>
 void Simulation::EngineOf<Dim>::update_lists() {
   const bool travelled = schedule_->must_rebuild(step_);
-  stopped_ = stopped_ || schedule_->stop_agreed();
+  if (schedule_->take_stop_agreed()) {
+    stopped_ = true;
+    forget_stop_request();
+  }
   if (schedule_->take_save_agreed()) {
     must_save_ = true;
     forget_checkpoint_request();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <exception>
 #include <memory>
 #include <optional>
 
@@ -47,6 +48,9 @@ class Simulation::Engine {
   std::int64_t num_particles_ = 0;
   int stage_ = 0;
   bool stopped_ = false;
+  bool is_in_step_ = false;     ///< or one was not ended
+  std::exception_ptr failure_;  ///< what run() threw
+  std::string restored_from_;   ///< checkpoint; empty: a new run
   ExchangeChoice choice_;
   std::unique_ptr<Trace> trace_;  ///< null: none was asked for
   std::unique_ptr<CheckpointKeeper> keeper_;
@@ -143,7 +147,6 @@ class Simulation::EngineOf final : public Simulation::Engine {
   std::vector<std::size_t> sizes_;       ///< of buffers, as last told
   std::int64_t overlap_watched_at_ = 0;  ///< step
   WorldScale scale_;
-  bool is_in_step_ = false;     ///< or one was not ended
   double chunk_seconds_ = 0.0;  ///< of chunks when they were last sized
   std::int64_t chunks_sized_at_ = 0;
   std::int64_t loop_steps_ = 0;

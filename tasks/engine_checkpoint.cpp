@@ -99,6 +99,7 @@ Simulation::EngineOf<Dim>::EngineOf(const Model& model, const std::string& check
     : Engine(model, std::move(communicator), options) {
   const OpenCheckpoint open = open_checkpoint(communicator_, checkpoint, model_);
   const CheckpointState& s = open.state;
+  restored_from_ = open.path;
   make_world({s.skin, s.reach, s.start_particles, s.has_bonds});
   make_strip();
   for (std::size_t w = 0; w < s.walls.size(); ++w) {

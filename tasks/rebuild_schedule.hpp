@@ -76,7 +76,8 @@ class RebuildSchedule {
   [[nodiscard]] std::optional<CheckNumbers> take_answer() {
     return std::exchange(answer_, std::nullopt);
   }
-  [[nodiscard]] bool stop_agreed() const { return stop_agreed_; }
+  /// Whether some rank wished to stop; true once.
+  [[nodiscard]] bool take_stop_agreed() { return std::exchange(stop_agreed_, false); }
   /// Whether some rank wished to save; true once.
   [[nodiscard]] bool take_save_agreed() { return std::exchange(save_agreed_, false); }
   [[nodiscard]] double wait_seconds() const { return wait_seconds_; }  ///< for answers

@@ -1,10 +1,16 @@
 #include <barchan/tasks/simulation.hpp>
 
 #include <atomic>
+#include <exception>
 #include <stdexcept>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include <barchan/comm/mpi_session.hpp>
 #include <barchan/core/error.hpp>
+#include <barchan/core/validate.hpp>
+#include <barchan/tasks/check_input.hpp>
 #include <barchan/tasks/engine.hpp>
 #include <barchan/tasks/stop_request.hpp>
 
@@ -21,6 +27,10 @@ bool stop_is_requested() noexcept {
 
 void Simulation::request_stop() noexcept {
   stop_requested.store(true, std::memory_order_relaxed);
+}
+
+void forget_stop_request() noexcept {
+  stop_requested.store(false, std::memory_order_relaxed);
 }
 
 bool checkpoint_is_requested() noexcept {
@@ -44,125 +54,155 @@ std::vector<std::string> exchange_choices() {
 
 Simulation::Simulation(const Model& model, const ParticleSet& particles, Communicator communicator,
                        const RunOptions& options) {
+  check_input(communicator, model, particles, options);
   if (model.dimension == 2)
     engine_ = std::make_unique<EngineOf<2>>(model, particles, std::move(communicator), options);
-  else if (model.dimension == 3)
-    engine_ = std::make_unique<EngineOf<3>>(model, particles, std::move(communicator), options);
   else
-    throw InputError("dimension " + std::to_string(model.dimension), "2 or 3");
+    engine_ = std::make_unique<EngineOf<3>>(model, particles, std::move(communicator), options);
 }
 
 Simulation::Simulation(std::unique_ptr<Engine> engine) : engine_(std::move(engine)) {}
 
 Simulation Simulation::restore(const Model& model, const std::string& checkpoint,
                                Communicator communicator, const RunOptions& options) {
+  check_input(communicator, model, checkpoint, options);
   if (model.dimension == 2)
     return Simulation(
         std::make_unique<EngineOf<2>>(model, checkpoint, std::move(communicator), options));
-  if (model.dimension == 3)
-    return Simulation(
-        std::make_unique<EngineOf<3>>(model, checkpoint, std::move(communicator), options));
-  throw InputError("dimension " + std::to_string(model.dimension), "2 or 3");
+  return Simulation(
+      std::make_unique<EngineOf<3>>(model, checkpoint, std::move(communicator), options));
 }
 
 Simulation::~Simulation() = default;
 Simulation::Simulation(Simulation&&) noexcept = default;
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 
+Simulation::Engine& Simulation::engine() const {
+  if (engine_ == nullptr) throw std::logic_error("Simulation: used after it was moved from");
+  return *engine_;
+}
+
+Simulation::Engine& Simulation::between_steps(const char* call) const {
+  Engine& engine = this->engine();
+  if (!is_mpi_initialized())
+    throw RunError(fmt::format("Simulation::{}: MPI has ended: call it before that", call));
+  if (!engine.is_in_step_) return engine;
+  if (engine.failure_)
+    throw RunError(
+        fmt::format("Simulation::{}: the run failed in the midst of step {}: begin again "
+                    "from a checkpoint",
+                    call, engine.step_));
+  throw std::logic_error(
+      fmt::format("Simulation::{}: called from within run(): call it after run() returned", call));
+}
+
 std::int64_t Simulation::run(std::int64_t num_steps) {
-  return engine_->run(num_steps);
+  if (num_steps < 0)
+    throw std::invalid_argument(fmt::format("Simulation::run: {} steps", num_steps));
+  Engine& engine = this->engine();
+  if (engine.failure_) std::rethrow_exception(engine.failure_);
+  return between_steps("run").run(num_steps);
 }
 bool Simulation::stopped() const {
-  return engine_->stopped_;
+  return engine().stopped_;
 }
 std::int64_t Simulation::step() const {
-  return engine_->step_;
+  return engine().step_;
 }
 double Simulation::time() const {
-  return static_cast<double>(engine_->step_) * engine_->model_.time.step;
+  return static_cast<double>(engine().step_) * engine().model_.time.step;
 }
 int Simulation::stage() const {
-  return engine_->stage_;
+  return engine().stage_;
 }
 const Model& Simulation::model() const {
-  return engine_->model_;
+  return engine().model_;
 }
 const RunOptions& Simulation::options() const {
-  return engine_->options_;
+  return engine().options_;
 }
 std::string Simulation::vector_width() const {
-  return engine_->vector_width();
+  return engine().vector_width();
 }
 const Communicator& Simulation::communicator() const {
-  return engine_->communicator_;
+  return engine().communicator_;
 }
 void Simulation::for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const {
-  engine_->for_each_owned(visit);
+  engine().for_each_owned(visit);
 }
 std::int64_t Simulation::num_owned() const {
-  return engine_->num_owned();
+  return engine().num_owned();
 }
 std::int64_t Simulation::num_particles() const {
-  return engine_->num_particles_;
+  return engine().num_particles_;
 }
 const LeftDomain& Simulation::left_domain() const {
-  return engine_->left_;
+  return engine().left_;
 }
 void Simulation::on_departure(std::function<void(std::span<const Departure>)> tell) {
-  engine_->tell_departures_ = std::move(tell);
+  engine().tell_departures_ = std::move(tell);
 }
 std::vector<Note> Simulation::take_notes() {
-  return std::exchange(engine_->notes_, {});
+  return std::exchange(engine().notes_, {});
 }
 void Simulation::apply_forces(const std::function<Vec3(const OwnedParticle&)>& force) {
-  engine_->apply_forces(force);
+  between_steps("apply_forces").apply_forces(force);
 }
 void Simulation::clear_forces() {
-  engine_->clear_forces();
+  between_steps("clear_forces").clear_forces();
 }
 Measures Simulation::measure() {
-  return engine_->measure();
+  return between_steps("measure").measure();
 }
 std::span<const WallState> Simulation::walls() const {
-  return engine_->walls();
+  return engine().walls();
 }
 std::uint64_t Simulation::digest() {
-  return engine_->digest();
+  return between_steps("digest").digest();
 }
 void Simulation::keep_checkpoints(const std::string& folder, const CheckpointSpec& spec) {
-  engine_->keeper_ = std::make_unique<CheckpointKeeper>(engine_->communicator_, folder,
-                                                        engine_->model_, spec, engine_->step_);
+  validate(spec);
+  Engine& engine = between_steps("keep_checkpoints");
+  engine.keeper_ = nullptr;  // the former one ends its work first
+  engine.keeper_ = std::make_unique<CheckpointKeeper>(engine.communicator_, folder, engine.model_,
+                                                      spec, engine.step_);
 }
 void Simulation::save_checkpoint() {
-  if (engine_->keeper_->last_begun() != engine_->step_) engine_->save_checkpoint();
+  Engine& engine = between_steps("save_checkpoint");
+  if (engine.keeper_ == nullptr)
+    throw std::logic_error("Simulation::save_checkpoint: call keep_checkpoints first");
+  if (engine.keeper_->last_begun() != engine.step_) engine.save_checkpoint();
 }
 bool Simulation::finish_checkpoints() {
-  return engine_->keeper_ == nullptr || engine_->keeper_->finish();
+  return engine().keeper_ == nullptr || engine().keeper_->finish();
 }
 std::vector<std::string> Simulation::take_checkpoint_warnings() {
-  return engine_->keeper_ ? engine_->keeper_->take_warnings() : std::vector<std::string>{};
+  return engine().keeper_ ? engine().keeper_->take_warnings() : std::vector<std::string>{};
 }
 std::string Simulation::last_checkpoint() const {
-  return engine_->keeper_ ? engine_->keeper_->last_complete() : "";
+  const Engine& engine = this->engine();
+  if (!engine.communicator_.is_root()) return "";
+  const std::string newest = engine.keeper_ ? engine.keeper_->last_complete() : "";
+  return newest.empty() ? engine.restored_from_ : newest;
 }
 Timings Simulation::timings() const {
-  return engine_->timings();
+  return engine().timings();
 }
 const ExchangeChoice& Simulation::exchange_choice() const {
-  return engine_->choice_;
+  return engine().choice_;
 }
 std::string Simulation::step_graph() const {
-  return graph_dot(engine_->communicator_, engine_->graph_shape());
+  return graph_dot(engine().communicator_, engine().graph_shape());
 }
 void Simulation::write_trace(const std::string& path) const {
-  if (!engine_->trace_) throw std::logic_error("Simulation::write_trace: RunOptions::trace is off");
-  engine_->trace_->write(path);
+  if (!engine().trace_) throw std::logic_error("Simulation::write_trace: RunOptions::trace is off");
+  engine().trace_->write(path);
 }
 double Simulation::skin() const {
-  return engine_->skin();
+  return engine().skin();
 }
 std::size_t Simulation::memory_bytes() const {
-  return engine_->memory_bytes();
+  return engine().memory_bytes();
 }
 
 }  // namespace barchan

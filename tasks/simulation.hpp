@@ -79,8 +79,10 @@ class Simulation {
  public:
   /// @param particles     all of them, the same on every rank
   /// @param communicator  the ranks that own the strips; a caller's own handle is duplicated
-  /// Errors: InputError, the same on every rank, for a model that cannot run (unstable step, too
-  /// many ranks for the domain, gross overlaps, unknown exchange or vector width).
+  /// Errors: InputError, the same on every rank, for a model that cannot run (validate.hpp, an
+  /// unstable step, too many ranks for the domain, gross overlaps, unknown exchange or vector
+  /// width), for input that differs between ranks, and for more threads than MPI's thread level
+  /// allows.
   Simulation(const Model& model, const ParticleSet& particles, Communicator communicator,
              const RunOptions& options = {});
   /// Goes on from a checkpoint, bit for bit, on any number of ranks and threads and with any
@@ -98,11 +100,16 @@ class Simulation {
   /// Errors: AgreedError, the same on every rank and between two steps: a particle left the domain
   /// and must not, overlaps beyond the limit, a particle or wall outran the skin, particles,
   /// contacts or bonds got lost. RunError on one rank only: a particle that in one step moves
-  /// farther than half the skin or is no longer finite, a wait without end.
+  /// farther than half the skin or is no longer finite, a wait without end. A run that failed
+  /// throws the same again; after an AgreedError the state can still be read and saved.
+  /// std::logic_error for calls that cannot be: fewer than 0 steps, from within run(), after the
+  /// simulation was moved from. RunError once MPI has ended.
   std::int64_t run(std::int64_t num_steps);
-  /// Ends run() on all ranks within a few steps. Callable from a signal handler.
+  /// Ends the run() of this process that is under way, or else its next one, on all ranks and
+  /// within a few steps; then the request is forgotten. Callable from a signal handler.
   static void request_stop() noexcept;
-  [[nodiscard]] bool stopped() const;  ///< all ranks agreed to stop
+  [[nodiscard]] bool stopped()
+      const;  ///< all ranks agreed to stop the last run(); the next goes on
 
   [[nodiscard]] std::int64_t step() const;
   [[nodiscard]] double time() const;  ///< [s]
@@ -149,7 +156,8 @@ class Simulation {
   static void request_checkpoint() noexcept;
   /// Checkpoints that could not be written, since the last call. On rank 0; local.
   [[nodiscard]] std::vector<std::string> take_checkpoint_warnings();
-  /// The folder of the newest complete one of this run. On rank 0, empty elsewhere; local.
+  /// The folder of the newest complete one of this run, at first that which it goes on from; empty:
+  /// none. On rank 0, empty elsewhere; local.
   [[nodiscard]] std::string last_checkpoint() const;
 
   [[nodiscard]] Timings timings() const;
@@ -168,6 +176,8 @@ class Simulation {
   template <int Dim>
   class EngineOf;
   explicit Simulation(std::unique_ptr<Engine> engine);
+  [[nodiscard]] Engine& engine() const;
+  [[nodiscard]] Engine& between_steps(const char* call) const;  ///< where `call` may be made
   std::unique_ptr<Engine> engine_;
 };
 

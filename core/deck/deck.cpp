@@ -9,6 +9,7 @@
 #include <barchan/core/deck/overrides.hpp>
 #include <barchan/core/deck/readers.hpp>
 #include <barchan/core/deck/table_reader.hpp>
+#include <barchan/core/validate.hpp>
 
 namespace barchan {
 
@@ -73,6 +74,8 @@ Deck parse_deck(std::string_view text, const std::string& file_name,
   deck::read_particles(reader, draft);
   deck::read_contacts(reader, draft);
   deck::check_regions(draft.deck.sources, draft.deck.model.dimension);
+  if (const auto fault = find_fault(draft.deck.model))
+    throw InputError(deck::place_of(root, fault->key), fault->what, fault->remedy);
   return std::move(draft.deck);
 }
 

@@ -1,6 +1,7 @@
 #include <barchan/core/deck/node.hpp>
 
 #include <algorithm>
+#include <charconv>
 #include <utility>
 
 #include <fmt/format.h>
@@ -136,6 +137,25 @@ std::string_view kind_name(Node::Kind kind) {
       return "a date or time";
   }
   return "nothing";
+}
+
+SourcePlace place_of(const Node& root, std::string_view key) {
+  const Node* node = &root;
+  while (!key.empty()) {
+    const std::string_view part = key.substr(0, key.find('.'));
+    key.remove_prefix(std::min(key.size(), part.size() + 1));
+    const Node* next = nullptr;
+    if (node->kind == Node::Kind::Array) {
+      std::size_t number = 0;
+      std::from_chars(part.data(), part.data() + part.size(), number);
+      if (number >= 1 && number <= node->items.size()) next = &node->items[number - 1];
+    } else if (const Node::Member* member = node->find(part)) {
+      next = &member->value;
+    }
+    if (next == nullptr) break;
+    node = next;
+  }
+  return node->place();
 }
 
 Node parse_toml(std::string_view text, const std::string& file_name) {

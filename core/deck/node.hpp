@@ -44,6 +44,10 @@ struct Node::Member {
 /// "a number", "a string", ... as messages say it.
 std::string_view kind_name(Node::Kind kind);
 
+/// Where a key stands, such as `wall.2.normal` (entries count from 1), or else the last table on
+/// the way there.
+SourcePlace place_of(const Node& root, std::string_view key);
+
 /// Reads TOML text. Errors: InputError with the place where the text stops being TOML.
 Node parse_toml(std::string_view text, const std::string& file_name);
 

@@ -7,12 +7,11 @@
 
 #include <barchan/core/deck/readers.hpp>
 #include <barchan/core/restitution.hpp>
+#include <barchan/core/validate.hpp>
 
 namespace barchan::deck {
 
 namespace {
-
-constexpr int kMaxMaterials = 1000;
 
 struct Rules {
   bool is_mixed = true;    ///< pairs without a [[pair]] take the constants of their materials
@@ -240,10 +239,10 @@ void read_material_names(const TableReader& root, DeckDraft& draft) {
     draft.materials.add(material.name, table.place("name"));
     draft.deck.model.materials.push_back(material);
   }
-  const int num = draft.materials.size();
-  if (num == 0 || num > kMaxMaterials) {
-    root.fail("material", fmt::format("{} materials", num), "write 1 to 1000 of them");
-  }
+  const std::size_t num = draft.deck.model.materials.size();
+  if (num == 0 || num > kMostMaterials)
+    root.fail("material", fmt::format("{} materials", num),
+              fmt::format("give 1 to {}", kMostMaterials));
 }
 
 void read_contacts(const TableReader& root, DeckDraft& draft) {

@@ -1,4 +1,5 @@
 // The run itself: domain, time, stages, search, output, checkpoints.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -100,15 +101,7 @@ LimitSpec read_limits(const TableReader& table) {
     const double share = table.number(key);
     return share > 0.0 ? share : std::numeric_limits<double>::infinity();
   };
-  const LimitSpec limits{limit("overlap_warning"), limit("overlap_error")};
-  if (table.has("overlap_warning") && std::isfinite(limits.overlap_warning) &&
-      limits.overlap_warning > limits.overlap_error) {
-    table.fail("overlap_warning",
-               fmt::format("overlap_warning = {} is beyond overlap_error = {}",
-                           limits.overlap_warning, limits.overlap_error),
-               "warn below the error, or never: overlap_warning = 0");
-  }
-  return limits;
+  return {limit("overlap_warning"), limit("overlap_error")};
 }
 
 void read_options(const TableReader& root, Model& model) {
@@ -129,10 +122,8 @@ void read_options(const TableReader& root, Model& model) {
   const TableReader checkpoint(*node("checkpoint"), root.dimension(), "[checkpoint]");
   model.checkpoint.every_steps = checkpoint.integer("every_steps");
   model.checkpoint.every_seconds = checkpoint.number("every_seconds");
-  const std::int64_t keep = checkpoint.integer("keep");
-  if (keep > 1000)
-    checkpoint.fail("keep", fmt::format("keep = {} is out of range", keep), "keep at most 1000");
-  model.checkpoint.keep = static_cast<int>(keep);
+  constexpr std::int64_t kMost = std::numeric_limits<int>::max();
+  model.checkpoint.keep = static_cast<int>(std::min(checkpoint.integer("keep"), kMost));
 }
 
 }  // namespace
@@ -148,8 +139,7 @@ void read_run_tables(const TableReader& root, DeckDraft& draft) {
 
 void read_stages(const TableReader& root, DeckDraft& draft) {
   std::vector<Stage>& stages = draft.deck.model.stages;
-  const auto nodes = root.tables("stage");
-  for (const Node* node : nodes) {
+  for (const Node* node : root.tables("stage")) {
     const TableReader table(*node, root.dimension(), "[[stage]]");
     Stage stage;
     stage.name = table.string("name");
@@ -157,12 +147,6 @@ void read_stages(const TableReader& root, DeckDraft& draft) {
     stage.max_time = table.optional_number("max_time").value_or(stage.max_time);
     stage.kinetic_ratio = table.number("kinetic_ratio");
     draft.stages.add(stage.name, table.place("name"));
-    const bool is_last = node == nodes.back();
-    if (!is_last && std::isinf(stage.max_time) && stage.kinetic_ratio == 0.0) {
-      table.fail("name",
-                 fmt::format("stage '{}' never ends, so those after it never begin", stage.name),
-                 "give it max_time or kinetic_ratio");
-    }
     stages.push_back(stage);
   }
   if (stages.empty()) {

@@ -23,6 +23,12 @@ void check_each(const Model& model, const ParticleData& p) {
   if (!(p.position.allFinite() && p.velocity.allFinite() && p.omega.allFinite())) {
     refuse("has a position or velocity that is not finite", "give finite numbers");
   }
+  const bool is_flat =
+      p.position.z() == 0.0 && p.velocity.z() == 0.0 && p.omega.x() == 0.0 && p.omega.y() == 0.0;
+  if (model.dimension == 2 && !is_flat)
+    refuse("leaves the plane",
+           "in 2D the third components of position and velocity are zero, and "
+           "omega turns about z alone");
   if (!(p.radius > 0.0 && std::isfinite(p.radius)))
     refuse(fmt::format("has radius {:g}", p.radius), "a radius is above zero [m]");
   if (!(p.density > 0.0 && std::isfinite(p.density)))

@@ -126,7 +126,7 @@ TEST(RebuildSchedule, ForeseesNothingWhereSomebodyHasAWish) {
     schedule.begin_check(travel_of(0.0, 0.0), {stop, !stop});
     EXPECT_FALSE(schedule.foresee());
     EXPECT_FALSE(schedule.must_rebuild(RebuildSchedule::kLag));
-    EXPECT_EQ(schedule.stop_agreed(), stop);
+    EXPECT_EQ(schedule.take_stop_agreed(), stop);
   }
 }
 
