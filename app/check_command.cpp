@@ -144,13 +144,13 @@ void print_step(const Model& model, const std::vector<StepLimit>& limits) {
                     fmt::format("{:.3g}", model.time.step / limits[i].step)});
   }
   std::printf("Stable step: chosen %g s\n%s", model.time.step, table(rows).c_str());
-  if (limits.size() > kMost) std::printf("  and %zu milder limits\n", limits.size() - kMost);
+  if (limits.size() > kMost) std::printf("  and %zu larger limits\n", limits.size() - kMost);
   if (limits.empty()) return;
   const double share = model.time.step / limits.front().step;
   if (share > 1.0 && model.time.allow_unstable) {
-    std::printf("  Warning: beyond the limit, which the deck allows (allow_unstable).\n");
+    std::printf("  Warning: the step is beyond the limit; time.allow_unstable allows that.\n");
   } else if (share > kAdvisedShare && share <= 1.0) {
-    std::printf("  Warning: the step is %s of its limit (%s); keep to a fifth: %.2g s.\n",
+    std::printf("  Warning: the step is %s of its limit (%s); a fifth of it is safe: %.2g s.\n",
                 percent(share).c_str(), limits.front().what.c_str(),
                 kAdvisedShare * limits.front().step);
   } else if (share <= kAdvisedShare) {

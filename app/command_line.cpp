@@ -15,12 +15,12 @@ namespace barchan::app {
 namespace {
 
 constexpr const char* kAbout =
-    "Discrete elements on strips: particles that touch, bond and break, on any number of ranks "
-    "with the same bits.";
+    "Discrete element method: disks and spheres that touch, bond and break, with the same bits on "
+    "any number of ranks.";
 constexpr const char* kFoot =
     "Run alone or under mpirun -n RANKS. Exit status: 0 done, 1 failed while running, 2 wrong "
     "input.\n"
-    "barchan COMMAND --help tells the options of a command.";
+    "barchan COMMAND --help lists the options of a command.";
 
 std::string listed(const std::vector<std::string>& words) {
   std::string text;
@@ -100,14 +100,15 @@ void add_run(CLI::App& root, RunArguments& run, Words& words) {
       ->check(one_of({"poll", "thread"}));
   command
       .add_option("--schedule", schedule,
-                  "Overlap communication with work (default), or one after the other")
+                  "Overlap communication with work (default), or wait for messages first")
       ->check(one_of({"overlap", "sequential"}));
   command
-      .add_option("--contact-search", search, "How contacts are found, instead of the deck's way")
+      .add_option("--contact-search", search,
+                  "How to find contacts, instead of the deck's search.kind")
       ->check(one_of({"cells", "all-pairs"}));
   command
       .add_option("--vector", run.options.vector,
-                  "Width of vectors; default: auto, the widest here")
+                  "Width of vectors; default: auto, the widest that this machine supports")
       ->check(one_of({"auto", "scalar", "avx2", "avx512"}));
   command.add_flag("--trace", run.options.trace,
                    "Write trace.json: tasks, messages and waits of all ranks, for Perfetto");
@@ -137,15 +138,15 @@ void add_probe(CLI::App& root, ProbeArguments& probe) {
 
 void add_others(CLI::App& root, CommandLine& line) {
   CLI::App& check = *root.add_subcommand(
-      "check", "Say what a deck would do, and whether its time step is stable");
+      "check", "Print what a deck would do, and whether its time step is stable");
   check.add_option("deck", line.check.deck, "The deck, a TOML file")->required()->type_name("DECK");
-  check.add_option("--ranks", line.check.ranks, "Show the strips of so many ranks")
+  check.add_option("--ranks", line.check.ranks, "Show the strips for this number of ranks")
       ->type_name("P")
       ->check(CLI::Range(1, 1 << 20));
   add_settings(check, line.check.settings);
 
   CLI::App& info =
-      *root.add_subcommand("info", "Say what a file or folder is, and its key figures");
+      *root.add_subcommand("info", "Print what a file or folder is, and its key figures");
   info.add_option("path", line.info_path, "A run folder, snapshot, particle file, series or deck")
       ->required()
       ->type_name("PATH");
@@ -155,12 +156,12 @@ void add_others(CLI::App& root, CommandLine& line) {
   convert.add_option("in", line.convert.in, "File to read; also a .pvtp of all ranks")
       ->required()
       ->type_name("IN");
-  convert.add_option("out", line.convert.out, "File to write; its ending tells the format")
+  convert.add_option("out", line.convert.out, "File to write; its ending selects the format")
       ->required()
       ->type_name("OUT");
   convert
       .add_option("--dimension", line.convert.dimension,
-                  "2 or 3; default: 2 when all lies in the plane z = 0")
+                  "2 or 3; default: 2 where all particles lie in the plane z = 0")
       ->type_name("D")
       ->check(CLI::IsMember({2, 3}));
   convert.add_flag("--force", line.convert.force, "Replace a file that exists");

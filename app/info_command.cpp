@@ -28,7 +28,7 @@ void show_folder(const std::string& path) {
     const bool is_started = fs::exists(path + "/series.csv");
     throw InputError(
         SourcePlace{path, 0, 0},
-        is_started ? "a run that has not ended: run.json is missing" : "is no folder of a run",
+        is_started ? "a run that has not ended: run.json is missing" : "is not a folder of a run",
         is_started ? "wait for it, or run it again"
                    : "give a run's folder, a snapshot, a particle file or a deck");
   }
@@ -123,7 +123,7 @@ void show_info(const std::string& path) {
   for (const char* ending : {".csv", ".data", ".lmp", ".vtp", ".pvtp"}) {
     if (path.ends_with(ending)) return show_particles(path);
   }
-  throw InputError(SourcePlace{path, 0, 0}, "this kind of file is not known",
+  throw InputError(SourcePlace{path, 0, 0}, "barchan does not know this kind of file",
                    "give a run's folder, .toml, .csv, .data, .lmp, .vtp, .pvtp, .pvd or run.json");
 }
 

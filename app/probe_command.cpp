@@ -34,7 +34,7 @@ std::string links_of(const ProbeReport& r) {
 
 void print_head(const ProbeReport& r, int ranks) {
   Rows head{{"MPI", r.mpi_library + ", thread level " + r.thread_level},
-            {"window", r.window.empty() ? "none can be made here" : r.window},
+            {"window", r.window.empty() ? "MPI cannot make one here" : r.window},
             {"links", fmt::format("{} between {} ranks, {}", r.num_links, ranks, links_of(r))}};
   std::fputs(table(head, 2).c_str(), stdout);
 }
@@ -104,7 +104,7 @@ bool is_refused(const ProbeReport& r, const ProbeOptions& options) {
 }
 
 [[noreturn]] void refuse(const ProbeReport& r) {
-  std::string text = "not every exchange asked for works between these ranks";
+  std::string text = "some of these exchanges do not work between these ranks";
   for (const std::string& line : lines_of(r.obstacles)) text += "\n  not here: " + line;
   throw InputError(text, "");
 }

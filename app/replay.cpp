@@ -55,7 +55,7 @@ void compare_replay(const Simulation& replay, const RecordedRun& recorded, std::
   const double with = per_step(sums[0]), without = per_step(sums[1]), exposed = per_step(sums[2]);
   std::printf(
       "Replay of %s: a step took %.4g µs with communication, %.4g µs without: %.4g µs exposed;\n"
-      "the workers' own clocks say %.4g µs (%.1f %% of the step apart). Digest equal.\n",
+      "the workers' own clocks measured %.4g µs (%.1f %% of the step apart). Digest equal.\n",
       recorded.exchange.c_str(), with, without, with - without, exposed,
       100.0 * (with - without - exposed) / with);
 }

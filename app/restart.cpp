@@ -23,7 +23,7 @@ void tell(const Communicator& world, const CheckpointChoice& choice, bool is_qui
   for (const std::string& reason : choice.skipped)
     std::fprintf(stderr, "barchan: warning: skipped a checkpoint: %s\n", reason.c_str());
   if (is_quiet) return;
-  std::fprintf(stderr, "going on from step %lld, %s\n", static_cast<long long>(choice.step),
+  std::fprintf(stderr, "continuing from step %lld, %s\n", static_cast<long long>(choice.step),
                choice.path.c_str());
 }
 
@@ -35,7 +35,7 @@ RestartPoint restart_point(const Communicator& world, const RunArguments& argume
   const bool is_auto = arguments.restart == "auto";
   if (!arguments.restart.empty()) {
     if (arguments.options.exchange == "replay")
-      throw InputError("--exchange replay does not go with --restart",
+      throw InputError("--exchange replay cannot be combined with --restart",
                        "replay a run from its start");
     point.checkpoint =
         find_checkpoint(world, is_auto ? folder.file("checkpoints") : arguments.restart);

@@ -31,7 +31,7 @@ void allreduce(const Communicator& communicator, std::span<T> values, MPI_Dataty
   check(MPI_Iallreduce(MPI_IN_PLACE, values.data(), mpi_count(values.size()), type, op,
                        communicator.handle(), &request),
         "MPI_Iallreduce");
-  communicator.await(request, "what all ranks say between steps", limit);
+  communicator.await(request, "an agreement of all ranks between two steps", limit);
 }
 
 int allreduce_flag(const Communicator& communicator, bool mine, MPI_Op op) {
@@ -128,7 +128,7 @@ Communicator Communicator::split(int group) const {
 void Communicator::barrier() const {
   MPI_Request request = MPI_REQUEST_NULL;
   check(MPI_Ibarrier(comm_, &request), "MPI_Ibarrier");
-  await(request, "all ranks to come to the same place");
+  await(request, "all ranks to reach the same point");
 }
 
 void Communicator::bcast(std::span<std::byte> bytes, int root) const {
@@ -176,12 +176,12 @@ std::vector<std::vector<std::byte>> Communicator::gather(std::span<const std::by
   MPI_Request request = MPI_REQUEST_NULL;
   check(MPI_Igather(&length, 1, MPI_UINT64_T, lengths.data(), 1, MPI_UINT64_T, 0, comm_, &request),
         "MPI_Igather");
-  await(request, "what all ranks hand to rank 0");
+  await(request, "what all ranks send to rank 0");
   if (!is_root()) {
     for_pieces(mine.size(), [&](std::size_t offset, int count) {
       check(MPI_Isend(mine.data() + offset, count, MPI_BYTE, 0, gather_tag, comm_, &request),
             "MPI_Isend");
-      await(request, "rank 0 to take its part");
+      await(request, "rank 0 to receive its part");
     });
     return {};
   }

@@ -22,7 +22,7 @@ class Tape;
 class Communicator {
  public:
   /// Duplicates `caller`. Collective. Errors: MpiError; RunError when MPI is not running.
-  /// Implicit, so that callers of the library hand over their own communicator as it is.
+  /// Implicit, so that a caller of the library can pass its own communicator.
   Communicator(MPI_Comm caller);
   static Communicator self() { return Communicator(MPI_COMM_SELF); }  ///< this rank alone
   static Communicator world() { return Communicator(MPI_COMM_WORLD); }
@@ -41,8 +41,8 @@ class Communicator {
   [[nodiscard]] bool is_root() const { return rank_ == 0; }
   [[nodiscard]] MPI_Comm handle() const { return comm_; }
 
-  /// What is received is recorded on this tape, or played from it, by those who ask for it
-  /// (tape.hpp); null: nothing is. Local.
+  /// A tape (tape.hpp) for exchanges and reductions that record what they receive, or play it;
+  /// null: none. Local.
   void set_tape(std::shared_ptr<Tape> tape) { tape_ = std::move(tape); }
   [[nodiscard]] Tape* tape() const { return tape_.get(); }
 
@@ -50,7 +50,7 @@ class Communicator {
   [[noreturn]] void abort(int status) const;
 
   /// Waits for a request on handle(); MPI's own waits never end when another rank hangs. Local.
-  /// Errors: WaitError; this communicator is then left to the program's end.
+  /// Errors: WaitError; this communicator is then not freed.
   void await(MPI_Request request, const std::string& what,
              double limit_seconds = wait_limit()) const;
 

@@ -21,7 +21,7 @@ struct Entry {
 
 constexpr std::array entries{
     Entry{"put-flag", "one-sided: put, flush, flag word, flush", make_put_flag},
-    Entry{"put-inband", "one-sided: one put whose number and checksum say that it is whole",
+    Entry{"put-inband", "one-sided: one put; its number and checksum show that it is complete",
           make_put_inband},
     Entry{"get", "one-sided: a flag word, then the reader pulls by MPI_Rget", make_get},
     Entry{"shared", "memory shared on one node: stores and an atomic word, no MPI in a step",
@@ -76,7 +76,7 @@ void check_exchange_name(std::string_view name) {
   for (const std::string& part : {parts->near, parts->far}) {
     if (entry_of(part).name != "fence") continue;
     throw InputError("exchange 'fence' cannot be mixed with another",
-                     "every fence is one of all ranks; mix two of the others, as in "
+                     "a fence involves all ranks; mix two other exchanges, as in "
                      "'shared+put-inband'");
   }
 }

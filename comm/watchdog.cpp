@@ -45,8 +45,8 @@ void set_wait_limit(double seconds) {
 
 std::string words_of_wait(double seconds, const std::string& what) {
   std::ostringstream text;
-  text << "waited " << seconds << " s in vain for " << what
-       << "; another rank may have died or hang (the limit is BARCHAN_WAIT_LIMIT, in seconds)";
+  text << "gave up after waiting " << seconds << " s for " << what
+       << "; another rank may have died or may hang (BARCHAN_WAIT_LIMIT sets the limit [s])";
   return text.str();
 }
 

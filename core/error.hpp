@@ -34,8 +34,8 @@ class RunError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A RunError that a rank finds alone, in a step. Others may find one as well: that of the first
-/// step, and of the lowest rank in it, is what one rank with all particles would have found.
+/// A RunError that one rank finds in a step. Other ranks may find one, too: the one to report is
+/// that of the first step, and in it of the lowest rank, since one rank alone would find the same.
 class StepError : public RunError {
  public:
   StepError(std::int64_t step, const std::string& what) : RunError(what), step_(step) {}
@@ -45,17 +45,17 @@ class StepError : public RunError {
   std::int64_t step_;
 };
 
-/// A RunError that every rank throws with the same words, so that one says it for all.
+/// A RunError that every rank throws with the same text, so that rank 0 prints it for all.
 class CommonError : public RunError {
  public:
   using RunError::RunError;
 };
 
-/// A CommonError that every rank throws between the same two steps, so that what there is can still
-/// be written together.
+/// A CommonError that every rank throws between the same two steps, so that they can still write
+/// results together.
 class AgreedError : public CommonError {
  public:
-  /// @param can_go_on  whether the state is sound: a run from here, under another rule, makes sense
+  /// @param can_go_on  the state is sound, so a restart under another rule can continue from here
   explicit AgreedError(const std::string& what, bool can_go_on = false)
       : CommonError(what), can_go_on_(can_go_on) {}
   [[nodiscard]] bool can_go_on() const { return can_go_on_; }

@@ -24,7 +24,7 @@ void check(const ParticleRecord<Dim>& p, const World<Dim>& world) {
   constexpr int kAllFlags = ParticleStore<Dim>::kFixed | ParticleStore<Dim>::kBonded;
   const bool is_right = p.id > 0 && p.type < world.laws.num_materials() && p.flags <= kAllFlags &&
                         p.has_external <= 1 && p.key == world.grid.key(p.motion);
-  if (!is_right) refuse("particle " + std::to_string(p.id) + " is none of this run");
+  if (!is_right) refuse("particle " + std::to_string(p.id) + " does not belong to this run");
 }
 
 template <int Dim>
@@ -40,7 +40,7 @@ void check_links(const Migration<Dim>& m, const World<Dim>& world) {
   for (const auto& b : m.bonds) {
     const bool is_right = b.bond.id_a > 0 && b.bond.id_a < b.bond.id_b &&
                           is_below(b.bond.law, world.bond_laws.size()) && b.is_current <= 1;
-    if (!is_right) refuse("a bond that makes no sense");
+    if (!is_right) refuse("a bond that is not valid");
   }
 }
 

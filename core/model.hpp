@@ -9,12 +9,12 @@
 
 #include <barchan/core/vec.hpp>
 
-// What a deck says, checked and in SI, free of the dimension (2D leaves z at zero).
-// Plain data: decks write it, generators and the simulation read it.
+// The contents of a deck, checked and in SI, for 2D and 3D alike (2D leaves z at zero).
+// Plain data: the deck reader writes it, generators and the simulation read it.
 
 namespace barchan {
 
-/// What becomes of a particle that leaves the domain along an axis that does not wrap.
+/// What happens to a particle that leaves the domain along an axis that is not periodic.
 enum class OutsidePolicy { Error, Delete };
 
 /// Box that bounds the particles; periodic axes wrap.
@@ -99,7 +99,7 @@ struct WallSpec {
   int from_stage = 0;    ///< absent before this stage
 };
 
-/// A stretch of the run; it ends by time or when the kinetic-energy ratio falls low enough.
+/// A stage of the run; it ends after a time or when the kinetic-energy ratio is low enough.
 struct Stage {
   std::string name;
   double local_damping =
@@ -118,11 +118,10 @@ enum class ContactSearchKind { Cells, AllPairs };
 
 struct SearchSpec {
   ContactSearchKind kind = ContactSearchKind::Cells;
-  std::optional<double> skin;  ///< [m]; none = the documented default
+  std::optional<double> skin;  ///< [m]; none = the default (tasks/stability.hpp)
 };
 
-/// Where a run is no longer to be trusted. Overlaps as shares of the smaller radius; infinite:
-/// never.
+/// Overlaps beyond which a run warns or ends, as shares of the smaller radius; infinite: never.
 struct LimitSpec {
   double overlap_warning = 0.5;
   double overlap_error = 1.0;
@@ -137,7 +136,7 @@ struct OutputSpec {
 struct CheckpointSpec {
   std::int64_t every_steps = 0;  ///< 0 = not by steps
   double every_seconds = 0.0;    ///< of wall-clock time; 0 = not by time
-  int keep = 2;                  ///< the newest so many stay on disk
+  int keep = 2;                  ///< number of checkpoints to keep, the newest ones
 };
 
 /// One particle of a file or generator, dimension-free (2D: z = vz = omegax = omegay = 0).

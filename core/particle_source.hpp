@@ -29,7 +29,7 @@ struct RadiusClass {
   double weight = 1.0;  ///< share by number, > 0, not normalised
 };
 
-/// What sizes a generator draws from; never empty.
+/// The sizes that a generator draws from; never empty.
 struct SizeDistribution {
   std::vector<RadiusClass> classes;
 
@@ -101,7 +101,7 @@ struct ParticleSource {
   std::optional<int> material;    ///< index; none only for a file that brings its own types
   std::optional<double> density;  ///< instead of the material's (or the file's), 2D areal
   Vec3 velocity = Vec3::Zero();   ///< [m/s]; a file's own velocities are added to it
-  Vec3 omega = Vec3::Zero();      ///< [rad/s]; likewise
+  Vec3 omega = Vec3::Zero();      ///< [rad/s]; a file's own are added to it
   std::optional<int> bond;  ///< index into Model::bond_laws: bonds those of this source that touch
       ///< (ring: the neighbours along it; touch: gap <= 1e-6 of the radii's sum)
   std::optional<Box> fixed;  ///< particles with centres in here never move; endless box = all

@@ -158,7 +158,7 @@ void Simulation::EngineOf<Dim>::report_departures(const std::vector<Departure>& 
   const Departure& first = left.front();
   throw AgreedError(
       fmt::format("at step {} particle {} is out of the domain, at {} with velocity {}{}: enlarge "
-                  "domain.lo and domain.hi, put a wall there, or let particles go by "
+                  "domain.lo and domain.hi, put a wall there, or take particles out with "
                   "domain.outside = \"delete\"",
                   step_, first.id, in_brackets(first.position, Dim),
                   in_brackets(first.velocity, Dim),

@@ -114,7 +114,7 @@ void Simulation::EngineOf<Dim>::judge_balance(const CheckNumbers& answer) {
   if (wrong.empty()) return;
   throw AgreedError(
       fmt::format("at step {} all ranks together have {} since lists were rebuilt: a fault of the "
-                  "program or the machine; go on from the last checkpoint, and report it",
+                  "program or the machine; restart from the last checkpoint, and report this",
                   step_, fmt::join(wrong, ", ")));
 }
 

@@ -69,7 +69,7 @@ std::unique_ptr<Exchange> first_exchange(const RunOptions& options,
   check_exchange(options.exchange, communicator);
   const bool has_played_tape = options.tape != nullptr && options.tape->is_playing();
   if (has_played_tape != (options.exchange == kReplay)) {
-    throw InputError("exchange 'replay' plays a recorded run, and nothing else does",
+    throw InputError("exchange 'replay' needs a recorded run",
                      "record a run with RunOptions::tape, rewind the tape, then run again with "
                      "exchange 'replay'");
   }
@@ -88,10 +88,10 @@ ExchangeChoice settle_exchange(Strip<Dim>& strip, const RunOptions& options,
                                const Communicator& communicator) {
   ExchangeChoice choice;
   choice.name = options.exchange;
-  choice.reason = "asked for by name";
+  choice.reason = "chosen by name";
   if (communicator.size() == 1) {
     choice.name = "none";
-    choice.reason = "one rank has nobody to exchange with";
+    choice.reason = "one rank has no neighbours";
   }
   if (communicator.size() == 1 || options.exchange != kAuto) return choice;
   SelectedExchange selected = select_exchange(communicator, strip.neighbours(), options_of(options),

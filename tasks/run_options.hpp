@@ -13,8 +13,8 @@
 namespace barchan {
 
 enum class Schedule { Overlap, Sequential };
-/// Who moves messages while chunks run: the workers, between chunks; or a thread that does nothing
-/// else, for ranks with a core to spare.
+/// What moves messages while chunks run: the workers, between chunks; or a thread that does nothing
+/// else, for ranks with a spare core.
 enum class Progress { Poll, Thread };
 
 /// Tests: the last rank loses one of these in the first rebuild from `step` on.
@@ -23,20 +23,20 @@ struct LossFault {
   std::int64_t step = 0;
 };
 
-/// How a run is carried out. Nothing in here changes a bit of the result.
+/// How to carry out a run. No option changes a bit of the result.
 struct RunOptions {
   int threads = 0;                ///< per rank; 0 = cores of the node over ranks on it
   std::string exchange = "auto";  ///< see exchange_choices()
   Schedule schedule = Schedule::Overlap;
   Progress progress = Progress::Poll;
   std::optional<ContactSearchKind> search;  ///< instead of the deck's
-  std::string vector = "auto";              ///< scalar, avx2, avx512 or the widest here
-  bool trace = false;                  ///< record what happens when; see Simulation::write_trace
-  std::size_t trace_events = 1 << 17;  ///< that each thread keeps, the latest
+  std::string vector = "auto";              ///< scalar, avx2, avx512 or the widest possible
+  bool trace = false;                  ///< record tasks and messages; see Simulation::write_trace
+  std::size_t trace_events = 1 << 17;  ///< the latest events that each thread keeps
   std::shared_ptr<Tape> tape;          ///< records all messages; played by exchange "replay"
   double max_delay_seconds = 0.0;      ///< tests: random delays in messages and tasks
   std::uint64_t delay_seed = 0;
-  int ranks_per_node = 0;  ///< tests: so many ranks in a row pass for a node; 0: the real nodes
+  int ranks_per_node = 0;  ///< tests: this many ranks in a row count as a node; 0: the real nodes
   LossFault loss;          ///< tests
 };
 

@@ -28,19 +28,18 @@ struct OwnedParticle {
   Vec3 position, velocity, omega;
 };
 
-/// One kind of communication of this rank [s].
+/// Times of one kind of communication on this rank [s].
 struct CommunicationTime {
-  double in_flight = 0.0;  ///< under way
-  double exposed = 0.0;    ///< of that, not spent on particles: waiting, or inside the exchange; a
-                           ///< worker's, averaged
-  double late = 0.0;       ///< of exposed: waits while the neighbour had not sent yet; known where
+  double in_flight = 0.0;  ///< messages were under way
+  double exposed = 0.0;    ///< a worker waited or was inside the exchange; mean over the workers
+  double late = 0.0;       ///< part of exposed: the neighbour had not sent yet; known only where
                            ///< both share a node, and so a clock
 };
 
-/// Where the time of a run went, this rank; what workers do side by side is averaged over them.
+/// Where the time of a run went on this rank; means over its workers.
 struct Timings {
   double loop_seconds = 0.0;             ///< inside run()
-  std::int64_t steps = 0;                ///< of this loop; what came before a restart is not in it
+  std::int64_t steps = 0;                ///< of this loop, without those before a restart
   std::map<std::string, double> phases;  ///< name → seconds; the rest of the loop is "other"
   std::map<std::string, CommunicationTime> communication;  ///< "halo", "rebuild", "reductions"
   double in_flight_seconds = 0.0;                          ///< all kinds
@@ -49,13 +48,13 @@ struct Timings {
   ExchangeStats exchange;  ///< zero on one rank
 };
 
-/// Something that happened in a run and that its log should say.
+/// An event of a run, for its log.
 struct Note {
   std::string text;  ///< a line
   bool is_warning = false;
 };
 
-/// What left the domain since the start, and the links that went with it.
+/// Particles that left the domain since the start, and the contacts and bonds that they took along.
 struct LeftDomain {
   std::int64_t particles = 0;
   LinkCounts links;
@@ -73,8 +72,8 @@ struct LeftDomain {
 /// works on a communicator of its own and prints nothing. It ends the program in one case, with a
 /// line on stderr: this rank cannot come back from a call of MPI, since another rank hangs
 /// (comm/call_watch.hpp).
-/// Construction, run, measure, digest, destruction and what is said to be are collective; the rest
-/// is local. One thread at a time.
+/// Construction, run, measure, digest, destruction and members documented as collective are
+/// collective; the rest is local. One thread at a time.
 class Simulation {
  public:
   /// @param particles     all of them, the same on every rank
@@ -85,11 +84,11 @@ class Simulation {
   /// allows.
   Simulation(const Model& model, const ParticleSet& particles, Communicator communicator,
              const RunOptions& options = {});
-  /// Goes on from a checkpoint, bit for bit, on any number of ranks and threads and with any
+  /// Continues from a checkpoint, bit for bit, on any number of ranks and threads and with any
   /// exchange.
   /// @param model       of the run that wrote it; length and outputs may differ
   /// @param checkpoint  its folder; see find_checkpoint
-  /// Errors, the same on every rank: InputError when it is damaged or of another model
+  /// Errors, the same on every rank: InputError when the checkpoint is damaged or of another model
   static Simulation restore(const Model& model, const std::string& checkpoint,
                             Communicator communicator, const RunOptions& options = {});
   ~Simulation();
@@ -97,19 +96,20 @@ class Simulation {
   Simulation& operator=(Simulation&&) noexcept;
 
   /// Advances by at most `num_steps`; fewer when a stop was requested. @return steps done
-  /// Errors: AgreedError, the same on every rank and between two steps: a particle left the domain
-  /// and must not, overlaps beyond the limit, a particle or wall outran the skin, particles,
-  /// contacts or bonds got lost. RunError on one rank only: a particle that in one step moves
-  /// farther than half the skin or is no longer finite, a wait without end. A run that failed
-  /// throws the same again; after an AgreedError the state can still be read and saved.
-  /// std::logic_error for calls that cannot be: fewer than 0 steps, from within run(), after the
-  /// simulation was moved from. RunError once MPI has ended.
+  /// Errors: AgreedError, the same on every rank and between two steps: a particle left a domain
+  /// that it may not leave, an overlap is beyond the limit, a particle or wall moved farther than
+  /// half the skin between rebuilds, particles, contacts or bonds are missing. RunError on one rank
+  /// only: a particle moved farther than half the skin in one step or is no longer finite, or
+  /// another rank did not answer. A run that failed throws the same again; after an AgreedError the
+  /// state can still be read and saved. std::logic_error for calls that are not possible: fewer
+  /// than 0 steps, from within run(), after the simulation was moved from. RunError once MPI has
+  /// ended.
   std::int64_t run(std::int64_t num_steps);
   /// Ends the run() of this process that is under way, or else its next one, on all ranks and
   /// within a few steps; then the request is forgotten. Callable from a signal handler.
   static void request_stop() noexcept;
-  [[nodiscard]] bool stopped()
-      const;  ///< all ranks agreed to stop the last run(); the next goes on
+  /// All ranks agreed to stop the last run(); the next one continues.
+  [[nodiscard]] bool stopped() const;
 
   [[nodiscard]] std::int64_t step() const;
   [[nodiscard]] double time() const;  ///< [s]
@@ -127,7 +127,7 @@ class Simulation {
   /// Calls `tell` on rank 0, within run(), with particles that left the domain, in order of their
   /// ids: before they are removed, or before run() throws. What it throws every rank throws.
   void on_departure(std::function<void(std::span<const Departure>)> tell);
-  /// What happened on this rank since the last call; what all ranks know is told by rank 0. Local.
+  /// Events on this rank since the last call; rank 0 has those that all ranks know. Local.
   [[nodiscard]] std::vector<Note> take_notes();
   /// Sets a force [N] on every owned particle, added in every step until it is set again or
   /// cleared.
@@ -136,23 +136,23 @@ class Simulation {
 
   /// Energies, contacts, largest overlap, momentum; over all ranks. Collective.
   [[nodiscard]] Measures measure();
-  /// Walls as they stand; force, torque and work as of the last measure(). Local.
+  /// Walls at this step; force, torque and work as of the last measure(). Local.
   [[nodiscard]] std::span<const WallState> walls() const;
-  /// State digest over all ranks (design: same bits everywhere). Collective.
+  /// Digest of the state of all ranks (docs/determinism.md). Collective.
   [[nodiscard]] std::uint64_t digest();
 
-  /// From now on run() saves the state to `folder` as `spec` says, and when a checkpoint is
-  /// requested; the newest spec.keep stay. A checkpoint is copied between two steps and written
-  /// behind the next ones; see CheckpointKeeper. It holds the state at the beginning of a step, so
-  /// whatever is written after run() returned comes first. Collective.
+  /// From now on run() saves the state to `folder` at the intervals of `spec` and on request, and
+  /// keeps the newest spec.keep checkpoints. It copies the state between two steps and writes it
+  /// behind the next ones; see CheckpointKeeper. A checkpoint has the state at the beginning of a
+  /// step, so results of that step should be written before the next run(). Collective.
   void keep_checkpoints(const std::string& folder, const CheckpointSpec& spec);
-  /// Saves the state as it is, unless it just was; finish_checkpoints() waits for it. Collective.
+  /// Saves the present state, unless it is saved; finish_checkpoints() waits for it. Collective.
   /// @pre keep_checkpoints()
   void save_checkpoint();
-  /// Waits for what is being written. @return false, on all ranks, when the last one is not on the
-  /// disk. Collective.
+  /// Waits until checkpoints are written. @return false, on all ranks, when the last one is not on
+  /// the disk. Collective.
   bool finish_checkpoints();
-  /// Saves soon, on all ranks when one asks for it. Callable from a signal handler.
+  /// Makes all ranks save the state within some steps. Callable from a signal handler.
   static void request_checkpoint() noexcept;
   /// Checkpoints that could not be written, since the last call. On rank 0; local.
   [[nodiscard]] std::vector<std::string> take_checkpoint_warnings();
@@ -165,7 +165,7 @@ class Simulation {
   [[nodiscard]] const ExchangeChoice& exchange_choice() const;
   /// The step graph of all ranks as DOT, for Graphviz; complete on rank 0. Collective.
   [[nodiscard]] std::string step_graph() const;
-  /// What happened when, as Chrome trace events of all ranks; opens in Perfetto. Collective.
+  /// Writes tasks, messages and waits of all ranks as Chrome trace events. Collective.
   /// @pre RunOptions::trace. Errors: RunError when the file cannot be written.
   void write_trace(const std::string& path) const;
   [[nodiscard]] double skin() const;
@@ -181,8 +181,8 @@ class Simulation {
   std::unique_ptr<Engine> engine_;
 };
 
-/// Names that RunOptions::exchange takes, the default first: `auto`, those of comm, the published
-/// scheme `return`. With a tape that plays, `replay` and no other.
+/// The values of RunOptions::exchange, the default first: `auto`, those of comm, and the published
+/// scheme `return`. A tape that plays needs `replay`.
 std::vector<std::string> exchange_choices();
 
 }  // namespace barchan

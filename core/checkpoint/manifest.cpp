@@ -146,7 +146,7 @@ Manifest parse_manifest(const std::string& text, const std::string& file) {
   try {
     return read_manifest(ordered_json::parse(json));
   } catch (const std::exception& e) {
-    refuse(file, std::string("makes no sense: ") + e.what());
+    refuse(file, std::string("is not valid: ") + e.what());
   }
 }
 

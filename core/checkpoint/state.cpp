@@ -134,7 +134,7 @@ CheckpointState decode_state(std::span<const std::byte> bytes, const std::string
     ByteReader in(bytes);
     state = take_state(in);
   } catch (const RunError& e) {
-    refuse(file, std::string("the state makes no sense: ") + e.what(), "take another checkpoint");
+    refuse(file, std::string("the state is not valid: ") + e.what(), "take another checkpoint");
   }
   const auto positive = [](double v) { return std::isfinite(v) && v > 0.0; };
   const bool is_sane = state.step >= 0 && state.stage >= 0 && state.stage_begin >= 0 &&
@@ -142,7 +142,7 @@ CheckpointState decode_state(std::span<const std::byte> bytes, const std::string
                        std::isfinite(state.skin) && positive(state.reach) &&
                        state.start_particles >= 0 && state.interval >= 0 && state.interval < 1024 &&
                        state.check_step >= 0 && std::abs(state.check_step - state.step) < 1024;
-  if (!is_sane) refuse(file, "the state makes no sense", "take another checkpoint");
+  if (!is_sane) refuse(file, "the state is not valid", "take another checkpoint");
   return state;
 }
 

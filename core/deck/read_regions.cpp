@@ -70,7 +70,7 @@ std::vector<Hole> read_holes(const TableReader& table) {
 /// `count` or `solid_fraction`, one of them.
 void read_amount(const TableReader& table, PackingSource& packing) {
   if (!table.has_one_of("count", "solid_fraction")) {
-    table.fail("", "this packing says nowhere how many particles it has",
+    table.fail("", "this packing does not say how many particles it has",
                "add count or solid_fraction");
   }
   packing.count = table.optional_integer("count");

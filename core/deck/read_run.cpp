@@ -20,7 +20,7 @@ int axis_index(const std::string& name, int dimension, const SourcePlace& place)
   for (int axis = 0; axis < dimension; ++axis) {
     if (name == axes[axis]) return axis;
   }
-  throw InputError(place, fmt::format("'{}' is no axis in {} dimensions", name, dimension),
+  throw InputError(place, fmt::format("'{}' is not an axis in {} dimensions", name, dimension),
                    dimension == 2 ? "axes are x and y" : "axes are x, y and z");
 }
 
@@ -82,7 +82,7 @@ TimeSpec read_time(const TableReader& root) {
   time.step = table.number("step");
   time.allow_unstable = table.boolean("allow_unstable");
   if (!table.has_one_of("end", "steps")) {
-    table.fail("", "[time] says nowhere when the run ends",
+    table.fail("", "[time] does not say when the run ends",
                "add end = <seconds> or steps = <number of steps>");
   }
   const auto end = table.optional_number("end");

@@ -54,7 +54,7 @@ void read_plate(const TableReader& table, WallSpec& wall) {
   if (table.dimension() == 3) {
     wall.depth = required(table, "depth", "a plate in 3D");
   } else {
-    refuse_on(table, {"depth"}, "a plate in 2D", "remove it: depth is unit thickness there");
+    refuse_on(table, {"depth"}, "a plate in 2D", "remove it: in 2D a plate has unit depth");
   }
   if (!table.has("load")) {
     refuse_on(table, {"mass", "damping"}, "a plate without load",

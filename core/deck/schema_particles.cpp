@@ -8,14 +8,15 @@ using T = ValueType;
 
 constexpr KeySpec kParticleKeys[] = {
     {"[[particles]]", "kind", T::Choice, "", "required",
-     "which source this is; its own keys follow below", "file|lattice|packing|ring|list"},
+     "kind of source; its own keys follow below", "file|lattice|packing|ring|list"},
     {"[[particles]]", "material", T::String, "", "required; file: the `type` column",
      "name of a material"},
     {"[[particles]]", "density", T::PositiveNumber, "kg/m³, 2D kg/m²", "the material's",
      "instead of it"},
     {"[[particles]]", "velocity", T::Vector, "m/s", "zero",
      "at the start; added to that of a file"},
-    {"[[particles]]", "omega", T::Spin, "rad/s", "zero", "likewise, turning; in 2D about z"},
+    {"[[particles]]", "omega", T::Spin, "rad/s", "zero",
+     "angular velocity at the start; added to that of a file; in 2D about z"},
     {"[[particles]]", "bond", T::String, "", "none",
      "name of a bond law that links those of this source that touch"},
     {"[[particles]]", "fixed", T::Fixed, "", "false",
@@ -30,12 +31,12 @@ constexpr KeySpec kParticleKeys[] = {
      "box `{ lo = ..., hi = ... }` that holds the particles"},
     {"lattice", "radius", T::Radius, "m", "required", "one radius, a range, or classes"},
     {"lattice", "spacing", T::PositiveNumber, "m", "twice the largest radius",
-     "between nearest sites, the first half of it from `lo`"},
+     "between nearest sites; the first site lies half of it from `lo`"},
     {"lattice", "arrangement", T::Choice, "", "square or cubic",
      "of the sites: 2D square, hexagonal; 3D cubic, fcc", "square|hexagonal|cubic|fcc"},
     {"lattice", "jitter", T::Fraction, "", "0",
      "random shift, as a share of the free gap about a particle"},
-    {"lattice", "seed", T::NonNegativeInteger, "", "1", "of radii and jitter"},
+    {"lattice", "seed", T::NonNegativeInteger, "", "1", "of the random radii and shifts"},
 
     {"packing", "region", T::Table, "m", "required",
      "box `{ lo = ..., hi = ... }` that holds the particles"},
@@ -46,7 +47,7 @@ constexpr KeySpec kParticleKeys[] = {
     {"packing", "holes", T::Tables, "", "none",
      "disks or spheres that no particle reaches into; they may overlap and reach out of the "
      "region"},
-    {"packing", "seed", T::NonNegativeInteger, "", "1", "of radii and positions"},
+    {"packing", "seed", T::NonNegativeInteger, "", "1", "of the random radii and positions"},
 
     {"ring", "center", T::Vector, "m", "required", "of the ring (2D only)"},
     {"ring", "radius", T::PositiveNumber, "m", "required",

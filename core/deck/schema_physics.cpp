@@ -42,7 +42,8 @@ constexpr KeySpec kPhysicsKeys[] = {
      "a contact never pulls: the normal force is held at zero where the dashpot outweighs the "
      "spring"},
     {"[contact]", "mixing", T::Choice, "", "harmonic",
-     "how pairs without a `[[pair]]` get their constants; `none` asks for every pair",
+     "how pairs without a `[[pair]]` get their constants; `none` requires a `[[pair]]` for every "
+     "pair",
      "harmonic|none"},
 
     {"[[bond]]", "name", T::String, "", "required", "unique"},
@@ -55,8 +56,10 @@ constexpr KeySpec kPhysicsKeys[] = {
      "half height (2D) or radius (3D) of the section over the smaller particle radius"},
     {"[[bond]]", "damping_ratio", T::NonNegativeNumber, "", "0",
      "of critical damping, between the two ends"},
-    {"[[bond]]", "tensile_strength", T::PositiveNumber, "Pa", "none", "breaks above; none = never"},
-    {"[[bond]]", "shear_strength", T::PositiveNumber, "Pa", "none", "breaks above; none = never"},
+    {"[[bond]]", "tensile_strength", T::PositiveNumber, "Pa", "none",
+     "largest stress that the bond bears; none = it never breaks"},
+    {"[[bond]]", "shear_strength", T::PositiveNumber, "Pa", "none",
+     "largest stress that the bond bears; none = it never breaks"},
 
     {"[[wall]]", "name", T::String, "", "required", "unique"},
     {"[[wall]]", "kind", T::Choice, "", "plane",
@@ -65,13 +68,14 @@ constexpr KeySpec kPhysicsKeys[] = {
     {"[[wall]]", "normal", T::Vector, "", "required",
      "towards the particles, of any length but zero"},
     {"[[wall]]", "material", T::String, "", "required", "name of a material"},
-    {"[[wall]]", "velocity", T::Vector, "m/s", "zero", "given; of a loaded plate, at its start"},
+    {"[[wall]]", "velocity", T::Vector, "m/s", "zero", "constant; of a loaded plate, at its start"},
     {"[[wall]]", "width", T::PositiveNumber, "m", "none",
      "plate only, required: across the normal; in 3D along the axis least aligned with it"},
     {"[[wall]]", "depth", T::PositiveNumber, "m", "none",
      "plate in 3D only, required: across normal and width"},
     {"[[wall]]", "load", T::NonNegativeNumber, "N/m²", "none",
-     "plate only: it moves along its normal, pressed along it by this load per face"},
+     "plate only: pressure that pushes it along its normal; such a plate moves along its normal "
+     "only"},
     {"[[wall]]", "mass", T::PositiveNumber, "kg", "none", "of a loaded plate, required there"},
     {"[[wall]]", "damping", T::NonNegativeNumber, "N·s/m", "0", "viscous, on a loaded plate"},
     {"[[wall]]", "from_stage", T::String, "", "the first stage",

@@ -19,11 +19,11 @@ constexpr KeySpec kRunKeys[] = {
     {"deck", "bond", T::Tables, "", "none", "laws of linking elements"},
     {"deck", "particles", T::Tables, "", "required", "where particles come from"},
     {"deck", "wall", T::Tables, "", "none", "planes and plates"},
-    {"deck", "stage", T::Tables, "", "one stage", "stretches of the run, in order"},
+    {"deck", "stage", T::Tables, "", "one stage", "stages of the run, in order"},
     {"deck", "search", T::Table, "", "none", "how contacts are found"},
-    {"deck", "limits", T::Table, "", "none", "beyond which a run is not to be trusted"},
-    {"deck", "output", T::Table, "", "none", "what the run folder gets, and how often"},
-    {"deck", "checkpoint", T::Table, "", "none", "when the run is saved"},
+    {"deck", "limits", T::Table, "", "none", "overlaps beyond which a run warns or ends"},
+    {"deck", "output", T::Table, "", "none", "what a run writes, and how often"},
+    {"deck", "checkpoint", T::Table, "", "none", "when a run saves its state"},
 
     {"[domain]", "lo", T::Vector, "m", "required", "lower corner"},
     {"[domain]", "hi", T::Vector, "m", "required", "upper corner, above `lo` on every axis"},
@@ -31,8 +31,8 @@ constexpr KeySpec kRunKeys[] = {
     {"[domain]", "strip_axis", T::Choice, "", "longest", "axis along which ranks own strips",
      "x|y|z|longest"},
     {"[domain]", "outside", T::Choice, "", "error",
-     "what becomes of a particle that leaves: the run ends, it is taken out, or all axes wrap "
-     "around",
+     "what happens when a particle leaves: the run ends, the particle is taken out, or all axes "
+     "wrap around",
      "error|delete|periodic"},
 
     {"[time]", "step", T::PositiveNumber, "s", "required", "time step"},
@@ -40,7 +40,7 @@ constexpr KeySpec kRunKeys[] = {
      "length of the run, rounded to whole steps; this or `steps`"},
     {"[time]", "steps", T::NonNegativeInteger, "", "none", "number of steps; this or `end`"},
     {"[time]", "allow_unstable", T::Boolean, "", "false",
-     "run even where the step is beyond the stable one"},
+     "run even if the step is beyond the stable one"},
 
     {"[[stage]]", "name", T::String, "", "required", "unique"},
     {"[[stage]]", "local_damping", T::Fraction, "", "0",
@@ -49,7 +49,7 @@ constexpr KeySpec kRunKeys[] = {
     {"[[stage]]", "max_time", T::PositiveNumber, "s", "none",
      "the stage ends after this time at the latest"},
     {"[[stage]]", "kinetic_ratio", T::NonNegativeNumber, "", "0",
-     "the stage ends when kinetic over elastic energy falls below; 0 = never"},
+     "the stage ends when kinetic over elastic energy falls below this; 0 = never"},
 
     {"[search]", "kind", T::Choice, "", "cells",
      "`cells` with lists of candidates, or every pair with every other, as a reference",
@@ -58,9 +58,9 @@ constexpr KeySpec kRunKeys[] = {
      "gap up to which a pair is kept as a candidate"},
 
     {"[limits]", "overlap_warning", T::NonNegativeNumber, "", "0.5",
-     "share of the smaller radius; an overlap beyond it is warned of, once; 0 = never"},
+     "share of the smaller radius; a larger overlap gives one warning; 0 = never"},
     {"[limits]", "overlap_error", T::NonNegativeNumber, "", "1",
-     "share of the smaller radius; an overlap beyond it ends the run; 0 = never"},
+     "share of the smaller radius; a larger overlap ends the run; 0 = never"},
 
     {"[output]", "series_every", T::NonNegativeInteger, "steps", "0",
      "between rows of `series.csv`; 0 = a hundredth of the run"},
@@ -73,7 +73,7 @@ constexpr KeySpec kRunKeys[] = {
     {"[checkpoint]", "every_seconds", T::NonNegativeNumber, "s", "0",
      "of wall-clock time between checkpoints; 0 = not by time"},
     {"[checkpoint]", "keep", T::PositiveInteger, "", "2",
-     "how many checkpoints stay, the newest ones"},
+     "number of checkpoints to keep, the newest ones"},
 };
 
 }  // namespace

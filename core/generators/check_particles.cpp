@@ -81,7 +81,7 @@ std::vector<BondData> checked_bonds(const Model& model, const ParticleSet& set,
       [](const BondData& a, const BondData& b) { return a.id_a == b.id_a && a.id_b == b.id_b; });
   if (twin != bonds.end()) {
     throw InputError(fmt::format("particles {} and {} are bonded twice", twin->id_a, twin->id_b),
-                     "one bond a pair");
+                     "a pair has at most one bond");
   }
   return bonds;
 }

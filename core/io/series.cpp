@@ -139,7 +139,7 @@ void SeriesWriter::put(const std::string& text) {
   if (::fstat(::fileno(file_), &now) != 0 || now.st_nlink == 0)
     throw RunError(path_ + " was removed while the run was writing it");
   if (S_ISREG(now.st_mode) && now.st_size != size_)
-    throw RunError(path_ + " was changed by somebody else while the run was writing it");
+    throw RunError(path_ + " was changed by another program while the run was writing it");
 }
 
 }  // namespace barchan

@@ -44,7 +44,7 @@ std::string payload(std::string_view text, const XmlReader& xml) {
     xml.fail("an array is not base64", "the file is damaged");
   std::memcpy(&size, bytes->data(), sizeof(size));
   if (size != bytes->size() - sizeof(size))
-    xml.fail("an array has not the length it announces", "the file is damaged");
+    xml.fail("the length of an array differs from the one in its header", "the file is damaged");
   return bytes->substr(sizeof(size));
 }
 

@@ -36,8 +36,8 @@ VectorWidth vector_width(const std::string& name) {
     if (name == name_of(width)) return width;
     known += (known.empty() ? "" : ", ") + name_of(width);
   }
-  throw InputError("vector width '" + name + "' is not to be had on this machine",
-                   "it has: auto, " + known);
+  throw InputError("this machine does not support vector width '" + name + "'",
+                   "it supports: auto, " + known);
 }
 
 namespace {

@@ -87,7 +87,7 @@ void RunFolder::resume() const {
     fs::create_directories(path_ + "/snapshots");
     fs::remove(path_ + "/run.json");  // is there only once a run has ended
   } catch (const fs::filesystem_error& e) {
-    refuse(path_, "cannot go on in the output folder: " + e.code().message(), kElsewhere);
+    refuse(path_, "cannot continue in the output folder: " + e.code().message(), kElsewhere);
   }
 }
 

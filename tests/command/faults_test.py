@@ -58,7 +58,7 @@ def hang(name, limit, begun, *more):
     done = ended(process)
     said = messages(done)
     expect(done.returncode == 1, f"{name}: status {done.returncode}: {done.stderr}")
-    expect(any("in vain" in line for line in said), f"{name}: {done.stderr}")
+    expect(any("gave up after waiting" in line for line in said), f"{name}: {done.stderr}")
     expect(not any("rank 2:" in line for line in said), f"{name}: the rank that hangs speaks: {said}")
     wait_for(lambda: not is_there(stopped), f"{name}: the stopped rank to go")
     return said

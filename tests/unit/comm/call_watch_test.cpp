@@ -20,7 +20,8 @@ TEST(CallWatchDeathTest, EndsTheProcessWithTheCallsNameWhenItTakesTooLong) {
     const CallWatch outer("MPI_Patient", 1000.0), inner("MPI_Hanging");
     std::this_thread::sleep_for(60s);
   };
-  EXPECT_EXIT(hang(), testing::ExitedWithCode(1), "waited .* in vain for a rank: MPI_Hanging");
+  EXPECT_EXIT(hang(), testing::ExitedWithCode(1),
+              "gave up after waiting .* s for a rank: MPI_Hanging");
 }
 
 TEST(CallWatch, LetsCallsBeThatEndInTime) {

@@ -146,7 +146,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"UnknownAxis",
               "hi = [10.0, 5.0]",
               "hi = [10.0, 5.0]\nperiodic = [\"z\"]",
-              {":6:12:", "'z' is no axis"}}),
+              {":6:12:", "'z' is not an axis"}}),
     name_of);
 
 INSTANTIATE_TEST_SUITE_P(
