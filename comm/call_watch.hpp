@@ -4,10 +4,10 @@
 
 namespace barchan {
 
-/// As long as it lives, its thread is in an MPI call that waits for other ranks and cannot be asked
-/// how it is getting on. When that takes longer than wait_limit(), a thread that watches says which
-/// call it is and ends the process with status 1, and the launcher ends the other ranks: nobody can
-/// come back out of such a call. Costs two uncontended locks; allocates nothing. From any thread.
+/// As long as it lives, its thread is in an MPI call that waits for other ranks and that cannot be
+/// polled. When the call takes longer than wait_limit(), a watching thread prints which call it is
+/// and ends the process with status 1, and the launcher ends the other ranks: no thread can return
+/// from such a call. Costs two uncontended locks; allocates nothing. From any thread.
 class CallWatch {
  public:
   /// @param call      a literal

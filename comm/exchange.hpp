@@ -51,7 +51,7 @@ struct HaloTimes {
 ///     poll(n) → received(n) → release(n) → outgoing(n + 1)
 ///
 /// for each side. The last edge is the caller's duty; with it two slots per direction are enough
-/// and nobody needs credits (slot_exchange.hpp proves it). A breach throws std::logic_error.
+/// and no credits are needed (slot_exchange.hpp proves it). A breach throws std::logic_error.
 ///
 /// One caller at a time. Construction, reserve and destruction are collective over the
 /// communicator; destruction while an exception unwinds frees nothing that would wait for the
@@ -97,7 +97,7 @@ class Exchange {
   /// that has all it needs and still owes others theirs. Never blocks.
   virtual void progress() {}
 
-  /// Whether somebody may need progress(): false where messages move without help.
+  /// Whether a rank may need progress(): false where messages move without help.
   [[nodiscard]] virtual bool needs_progress() const { return true; }
 
   /// True when both sides are complete, in and out.
@@ -128,7 +128,7 @@ struct ExchangeOptions {
   double max_delay_seconds =
       0.0;  ///< tests: hide arrived messages and hold sends up to this long; 0 = never
   std::uint64_t delay_seed = 0;
-  int ranks_per_node = 0;  ///< tests: so many ranks in a row pass for a node; 0: the real nodes
+  int ranks_per_node = 0;  ///< tests: this many ranks in a row count as a node; 0: the real nodes
 };
 
 /// Builds the exchange called `name` on a duplicate of `communicator`. Collective. "a+b" is a

@@ -10,7 +10,7 @@ namespace barchan {
 
 /// For each rank a number that ranks share when they share memory: the lowest rank of their node.
 /// Collective.
-/// @param ranks_per_node  tests: so many ranks in a row pass for a node; 0: the real nodes
+/// @param ranks_per_node  tests: this many ranks in a row count as a node; 0: the real nodes
 [[nodiscard]] std::vector<std::int64_t> nodes_of_ranks(const Communicator& communicator,
                                                        int ranks_per_node = 0);
 

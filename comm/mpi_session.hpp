@@ -4,9 +4,9 @@
 
 namespace barchan {
 
-/// MPI for a program's whole life: MPI_Init_thread(SERIALIZED) and MPI_Finalize, each only where
-/// nobody else has done it. Only a program's main makes one; the library never starts MPI unasked.
-/// A singleton (no mpirun) is a run of one rank. Errors: MpiError; RunError when the library gives
+/// MPI for a program's whole life: MPI_Init_thread(SERIALIZED) and MPI_Finalize, each only where no
+/// other code has done it. Only a program's main makes one; the library never starts MPI unasked. A
+/// singleton (no mpirun) is a run of one rank. Errors: MpiError; RunError when the library gives
 /// less than MPI_THREAD_SERIALIZED.
 class MpiSession {
  public:

@@ -22,7 +22,7 @@ struct ExchangeCost {
   double availability = 0.0;  ///< SMB: share of both_ways that is free for work without any poll
 };
 
-/// The work of a step: so long, in so many pieces with a poll after each.
+/// The work of a step: its length, and its number of pieces, with a poll after each.
 struct WorkPattern {
   double seconds = 0.0;
   int num_chunks = 1;
@@ -97,7 +97,7 @@ struct ProbeOptions {
   std::vector<std::string> exchanges;
   std::vector<std::size_t> sizes = {64, 256, 1 << 10, 1 << 12, 1 << 14, 1 << 16, 1 << 18, 1 << 20};
   double budget_seconds = 0.05;  ///< for each of the five measurements of a row
-  int ranks_per_node = 0;  ///< tests: so many ranks in a row pass for a node; 0: the real nodes
+  int ranks_per_node = 0;  ///< tests: this many ranks in a row count as a node; 0: the real nodes
 };
 
 /// Measures all exchanges between neighbouring ranks. Collective; the same on every rank.

@@ -4,9 +4,9 @@
 
 namespace barchan {
 
-/// Work for measurements: keeps the core busy for a number of rounds that takes so many seconds on
-/// a quiet machine. What steals the core (the kernel's TCP, somebody else) makes it longer, as it
-/// does with real work; a loop that watched the clock would hide that.
+/// Work for measurements: a number of rounds that takes the given time on a quiet machine. Other
+/// users of the core (the kernel's TCP, other processes) make it longer, as they do with real work;
+/// a loop that watched the clock would hide that.
 class SpinWork {
  public:
   SpinWork();  ///< measures this core, about a millisecond

@@ -17,7 +17,7 @@ namespace barchan {
 /// Cuts for strips of equal counts, each at least `min_slabs` wide: cut i lies where the sum of the
 /// counts is nearest to i / num_strips of the total.
 /// @param count_per_slab  particles in each slab; all zero: equal widths
-/// Errors: InputError when more strips are asked for than fit (says how many do).
+/// Errors: InputError when that many strips do not fit (says how many do).
 [[nodiscard]] std::vector<int> cut_equal(std::span<const std::int64_t> count_per_slab,
                                          int num_strips, int min_slabs);
 

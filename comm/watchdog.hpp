@@ -21,7 +21,7 @@ inline double file_wait_limit() {
   return 10.0 * wait_limit();
 }
 
-/// What is said of a wait that was given up: "gave up after waiting 120 s for <what>; …".
+/// The message about a wait that was given up: "gave up after waiting 120 s for <what>; …".
 std::string words_of_wait(double seconds, const std::string& what);
 
 /// A message that never came. Other ranks may wait as well, each for something else.

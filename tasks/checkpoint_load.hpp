@@ -12,11 +12,11 @@
 
 namespace barchan {
 
-/// A checkpoint to go on from.
+/// A checkpoint from which a run continues.
 struct CheckpointChoice {
   std::string path;  ///< its folder
   std::int64_t step = 0;
-  std::vector<std::string> skipped;  ///< newer ones, and what is wrong with each
+  std::vector<std::string> skipped;  ///< newer checkpoints, and what is wrong with each
 };
 
 /// The newest checkpoint in `path` of which every byte verifies. @param path  a checkpoint (its

@@ -52,7 +52,7 @@ class Simulation::Engine {
   std::exception_ptr failure_;  ///< what run() threw
   std::string restored_from_;   ///< checkpoint; empty: a new run
   ExchangeChoice choice_;
-  std::unique_ptr<Trace> trace_;  ///< null: none was asked for
+  std::unique_ptr<Trace> trace_;  ///< null: no trace
   std::unique_ptr<CheckpointKeeper> keeper_;
   LeftDomain left_;
   std::function<void(std::span<const Departure>)> tell_departures_;

@@ -10,14 +10,14 @@
 
 namespace barchan {
 
-/// Collective. Errors, the same on every rank: InputError for an exchange that nobody knows, with
+/// Collective. Errors, the same on every rank: InputError for an unknown exchange, with
 /// those that work between these ranks and why the others do not.
 void check_exchange(const std::string& name, const Communicator& communicator);
 
-/// The exchange that a run begins with: the one asked for; for `auto` a two-sided one, which works
-/// everywhere, until the sizes of messages are known; for `replay` the tape. Null on one rank.
-/// Collective. Errors, the same on every rank: InputError for an unknown name (with the list), one
-/// that does not work here (with the remedy), or `replay` without a recorded tape.
+/// The exchange that a run begins with: the one that the options name; for `auto` a two-sided one,
+/// which works everywhere, until the sizes of messages are known; for `replay` the tape. Null on
+/// one rank. Collective. Errors, the same on every rank: InputError for an unknown name (with the
+/// list), one that does not work here (with the remedy), or `replay` without a recorded tape.
 [[nodiscard]] std::unique_ptr<Exchange> first_exchange(const RunOptions& options,
                                                        const Communicator& communicator,
                                                        Neighbours neighbours);

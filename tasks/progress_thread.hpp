@@ -8,7 +8,7 @@
 namespace barchan {
 
 /// A thread that lets messages advance and does nothing else. It calls `drive` again and again
-/// under `guard`, which everybody else holds while in the exchange: one thread at a time.
+/// under `guard`, which all other threads hold while in the exchange: one thread at a time.
 ///
 ///     resume() → drive, drive, …, → pause() returns: it is out of the exchange, and stays out
 class ProgressThread {

@@ -31,8 +31,8 @@ struct CheckNumbers {
 /// The next check is n steps later, for the largest n that satisfies this, is at most twice the
 /// last n, and at most kLongest. Where not even n = 0 does, lists are rebuilt now.
 ///
-/// t(n) reaches to the answer of the next check, and speeds may double until then. Whoever takes
-/// the answer verifies the bound after the fact: d > skin/2 means that a contact may have been
+/// t(n) reaches to the answer of the next check, and speeds may double until then. The engine
+/// verifies the bound when it takes the answer: d > skin/2 means that a contact may have been
 /// missed, which is an error, never silence.
 class RebuildSchedule {
  public:
@@ -70,7 +70,7 @@ class RebuildSchedule {
   /// The decision for `step`, before it; waits for the reduction when its time has come.
   [[nodiscard]] bool must_rebuild(std::int64_t step);
   /// On a lone rank: the answer of the check just begun, kLag steps early, and the step of the next
-  /// check; none, if lists will be rebuilt or somebody had a wish. Changes nothing.
+  /// check; none, if lists will be rebuilt or some rank had a wish. Changes nothing.
   [[nodiscard]] std::optional<Foresight> foresee();
   /// What the check found that the last must_rebuild() had the answer of; once.
   [[nodiscard]] std::optional<CheckNumbers> take_answer() {

@@ -28,12 +28,12 @@ struct StepTimes {
   double chunks = 0.0;     ///< narrow phase, forces and rows of the interior
   double bands = 0.0;      ///< pairs and rows along the cuts, packing
   double send = 0.0;       ///< inside the exchange, sending: where that waits, this is waiting
-  double poll = 0.0;       ///< inside the exchange, asking for messages between chunks
-  double wait = 0.0;       ///< idle for want of a halo
+  double poll = 0.0;       ///< inside the exchange, polling between chunks
+  double wait = 0.0;       ///< idle, waiting for a halo
   double late = 0.0;       ///< of wait: until a neighbour on this node had sent
   double in_flight = 0.0;  ///< from sending the halo until the neighbours' halo was noticed
 
-  /// What the step would not have taken without communication.
+  /// The time that communication adds to the step.
   [[nodiscard]] double exposed() const { return send + poll + wait; }
 };
 
@@ -52,18 +52,17 @@ struct StepTimes {
 ///   left, right(l)    of step k precede the sends of step k+1's halo,
 ///                     which is in flight behind the chunks of step k+1
 ///
-/// A chunk that ends polls the exchange under a try-lock; when all is in, it still lets the
-/// exchange advance, for neighbours who wait for the rest of what this rank sent. An exchange whose
-/// messages come by themselves is left alone while every lane has chunks to do. When no chunk is
-/// left, one drain node polls until all is in; a lone worker leaves it for the left band once that
-/// can be done. With Progress::Thread a thread polls all the time, and chunks only look at what it
-/// found. With Schedule::Sequential the halo is waited for before the first chunk: nothing is
-/// hidden.
+/// A chunk that ends polls the exchange under a try-lock. When both halos are in, it still lets the
+/// exchange advance, since neighbours may wait for the rest of what this rank sent. Where messages
+/// arrive without polls, workers do not poll while every lane has chunks left. When no chunk is
+/// left, one drain node polls until both halos are in; a lone worker leaves it for the left band as
+/// soon as that band can be finished. With Progress::Thread a thread polls all the time, and chunks
+/// only read what it found. With Schedule::Sequential the rank waits for the halo before the first
+/// chunk: nothing is hidden.
 ///
-/// A rank without neighbours may take several steps in one go. A lane then begins its next step
-/// when its own is done, whatever the others do, and a band waits for the band beside it, one step
-/// before, as it does between ranks: a worker that was held up for a moment holds up nobody, unless
-/// for longer than a step.
+/// A rank without neighbours may run several steps at once. A lane then begins its next step when
+/// its own is done, and a band waits for the band beside it, one step before, as it does between
+/// ranks: a delay of one worker delays the others only if it is longer than a step.
 template <int Dim>
 class StepGraph {
  public:
@@ -81,7 +80,7 @@ class StepGraph {
   void for_each_lane(const std::function<void(int)>& body);
   [[nodiscard]] StepTimes times() const;
   [[nodiscard]] GraphShape shape() const;
-  /// From now on what happens is recorded. @param trace  lives longer; null: no more
+  /// Records tasks and messages from now on. @param trace  lives longer; null: stop recording
   void set_trace(Trace* trace) { trace_ = trace; }
 
  private:
@@ -120,7 +119,7 @@ class StepGraph {
 
   Strip<Dim>& strip_;
   Schedule schedule_;
-  tbb::global_control workers_;  ///< as many as asked for, also on a node with fewer cores
+  tbb::global_control workers_;  ///< the requested number, also on a node with fewer cores
   tbb::task_arena arena_;
   std::unique_ptr<tbb::flow::graph> graph_;
   std::unique_ptr<Node> drain_;

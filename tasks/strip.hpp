@@ -21,7 +21,7 @@ namespace barchan {
 /// built.
 struct RebuildWaits {
   double halo = 0.0;       ///< for a halo that the rebuild made useless
-  double migration = 0.0;  ///< for migrants, and for counts when strips are cut anew
+  double migration = 0.0;  ///< for migrants, and for counts when cuts move
   double ghosts = 0.0;     ///< for ghosts, and for the size of halos to come
   double in_flight = 0.0;  ///< migrants and ghosts, from the send until they were in
   double late = 0.0;       ///< of all: until a neighbour on this node had sent
@@ -100,7 +100,7 @@ class Strip {
 
   [[nodiscard]] const std::vector<int>& cuts() const { return cuts_; }
   Exchange* exchange() { return exchange_.get(); }
-  /// Goes on with another exchange. Between a seed or rebuild and the next step. Collective.
+  /// Continues with another exchange. Between a seed or rebuild and the next step. Collective.
   void set_exchange(std::unique_ptr<Exchange> exchange);
   [[nodiscard]] std::size_t most_halo_bytes() const;  ///< of a message to a neighbour
   [[nodiscard]] std::int64_t send_ns() const {
@@ -153,7 +153,7 @@ class Strip {
   [[nodiscard]] bool has_neighbour(int l, Side side) const;
   /// What the lane beside wrote of its band, for the step at hand. @pre has_neighbour, !is_remote
   [[nodiscard]] const Bytes& inbox(int l, Side side) const;
-  /// Sends the outermost posts. bulk() gives what came, from a rank or a lane; empty: from nobody.
+  /// Sends the outermost posts. bulk() gives what came, from a rank or a lane; empty: none came.
   void begin_bulk();
   [[nodiscard]] std::span<const std::byte> bulk(int l, Side side) const;
   void refresh_ghosts();

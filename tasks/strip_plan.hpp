@@ -21,7 +21,7 @@ struct StripPlan {
   std::vector<std::int64_t> slab_counts;  ///< particles at the start
 
   [[nodiscard]] int most_ranks() const;
-  /// Particles of each of so many strips. @pre num_strips <= most_ranks()
+  /// Particles of each of `num_strips` strips. @pre num_strips <= most_ranks()
   [[nodiscard]] std::vector<std::int64_t> strip_counts(int num_strips) const;
 };
 

@@ -4,7 +4,7 @@
 
 namespace barchan {
 
-/// Threads per rank unless told: the node's cores over the ranks on it, but no more than this
+/// Threads per rank by default: the node's cores over the ranks on it, but no more than this
 /// process may run on; one where MPI's thread level allows no more. The same on every rank.
 /// Collective.
 [[nodiscard]] int default_threads(const Communicator& communicator);

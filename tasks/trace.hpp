@@ -12,7 +12,7 @@
 
 namespace barchan {
 
-/// What happened when on this rank's workers: slices of time by name, messages, counters.
+/// Records what this rank's workers did and when: slices of time by name, messages, counters.
 ///
 /// Each worker writes into a ring of its own, made beforehand: nothing is allocated or locked while
 /// a step runs, and the latest events remain when a ring is full. Times are now_ns().

@@ -23,7 +23,7 @@ class RunFolder {
   /// nothing else. One rank. Errors: InputError.
   void begin() const;
 
-  /// Makes ready to go on with what is in the folder. One rank. Errors: InputError.
+  /// Prepares to continue with the results in the folder. One rank. Errors: InputError.
   void resume() const;
 
  private:

@@ -8,11 +8,11 @@
 namespace barchan {
 
 /// `log.txt` of a run folder: a line for everything that a run did beside its steps. Each line is
-/// on its way to the disk before the call returns. Rank 0 writes; a log that cannot be written
-/// is given up, since no result depends on it.
+/// on its way to the disk before the call returns. Rank 0 writes; when the log cannot be written,
+/// it stops, since no result depends on it.
 class RunLog {
  public:
-  /// @param continues  goes on with the log that is there
+  /// @param continues  appends to the log in the folder
   RunLog(const Simulation& simulation, std::string path, bool continues);
 
   /// Takes the notes of all ranks. Collective.

@@ -12,7 +12,7 @@
 
 namespace barchan {
 
-/// What a results folder says beyond what the simulation knows.
+/// What the results name and the simulation does not know.
 struct ResultsSpec {
   std::string deck;                ///< as the user named it
   std::vector<Ring> rings;         ///< whose diameters go into the series
@@ -20,7 +20,7 @@ struct ResultsSpec {
   bool continues = false;          ///< the folder is that of the checkpoint the simulation is from
 };
 
-/// Writes a run's folder as its deck asks for:
+/// Writes a run's folder as its deck says:
 ///
 ///     RunResults results(sim, RunFolder("case.out"), particles, {"case.toml"});
 ///     while (sim.step() < end && !sim.stopped()) {
@@ -33,9 +33,9 @@ struct ResultsSpec {
 /// the folder cannot be made; RunError when a file cannot be written.
 class RunResults {
  public:
-  /// Clears and starts the folder, with the state as it is: RunFolder::check is the caller's. When
-  /// it continues, all that is of later steps goes, so that what follows is as if never
-  /// interrupted.
+  /// Clears the folder and writes the present state; the caller has called RunFolder::check. When
+  /// it continues, removes the results of later steps, so that the files end like those of a run
+  /// without interruption.
   /// @param simulation  lives longer
   RunResults(Simulation& simulation, RunFolder folder, const ParticleSet& particles,
              ResultsSpec spec);
@@ -43,7 +43,7 @@ class RunResults {
   [[nodiscard]] std::int64_t next_step()
       const;     ///< at which something is due; after the present one
   void write();  ///< what is due at the present step
-  /// After an AgreedError: a row and a snapshot of the state as it is.
+  /// After an AgreedError: a row and a snapshot of the present state.
   void write_failed();
   [[nodiscard]] RunLog& log() { return *log_; }
   /// The last row and snapshot, the picture and run.json. @return complete on rank 0

@@ -25,7 +25,7 @@ class SeriesTable {
   /// @param interval  steps between rows from here on
   [[nodiscard]] std::string damage(const Simulation& simulation, std::int64_t interval) const;
 
-  /// A row of the state as it is. Collective. @return what was measured. Errors: RunError.
+  /// A row of the present state. Collective. @return what was measured. Errors: RunError.
   Measures append(Simulation& simulation);
 
  private:
@@ -33,11 +33,11 @@ class SeriesTable {
   std::optional<SeriesWriter> writer_;  ///< rank 0
 };
 
-/// A name as a column's: letters, digits, - and _; all else becomes _.
+/// A name as part of a column's name: all but letters, digits, - and _ becomes _.
 [[nodiscard]] std::string column_name(const std::string& name);
 
 /// What the columns of each wall begin with: its column_name, and where two walls would get the
-/// same, _2, _3, ... behind it. A wall whose name is a column's as it stands keeps it.
+/// same, _2, _3, ... behind it. A wall whose name needs no change keeps it.
 [[nodiscard]] std::vector<std::string> wall_columns(std::span<const WallSpec> walls);
 
 }  // namespace barchan

@@ -27,11 +27,11 @@ class SnapshotWriter {
   SnapshotWriter(std::string folder, Densities densities)
       : folder_(std::move(folder)), densities_(std::move(densities)) {}
 
-  /// Goes on with the snapshots in the folder that are before the present step and at multiples of
-  /// `every`; removes the others, which a run left that ended there or went further. Collective.
+  /// Keeps the snapshots in the folder that are before the present step and at multiples of
+  /// `every`; removes the others, which an earlier run wrote at its end or later. Collective.
   /// Errors: RunError.
   void resume(const Simulation& simulation, std::int64_t every);
-  /// The state as it is. Collective. Errors: RunError.
+  /// The present state. Collective. Errors: RunError.
   void write(const Simulation& simulation);
   [[nodiscard]] std::int64_t last_step() const { return last_step_; }  ///< -1: none yet
 
