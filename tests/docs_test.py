@@ -14,6 +14,7 @@ NAMED_FILE = re.compile(r"(?<![\w/.<*-])((?:[\w.-]+/)*[\w-]+\.(?:hpp|cpp|md|py|s
 OF_OTHERS = {"--mca", "--bind-to", "--cpu-bind", "--mpi", "--oversubscribe", "--launcher", "--version", "--help",
              "--gtest_filter", "--gtest_repeat", "--preset", "--build", "--install", "--prefix", "--allow-run-as-root"}
 WORDS_OF_OTHERS = {"tc", "mpi_yield_when_idle", "MPI_ERR_WIN", "ring1_diameter_x", "ring1_diameter_y"}
+IDIOMS = re.compile(r"\b(is told|are told|to be had|so many|goes on without|the like of|as it stands)\b")
 faults = []
 
 
@@ -117,6 +118,7 @@ def check_toml(place, block):
 def check_page(page):
     place, text = page.relative_to(TREE).as_posix(), text_of(page)
     check_links(page, text)
+    check_english(place, text)
     check_options(place, text)
     for block in re.findall(r"^```toml\n(.*?)^```", text, re.DOTALL | re.MULTILINE):
         check_toml(place, block)
@@ -130,7 +132,14 @@ def check_page(page):
             faults.append(f"{place}: the deck has no key {quoted}")
 
 
+def check_english(place, text):
+    """Phrases that a reader with school English stumbles over, in pages and messages."""
+    for phrase in IDIOMS.findall(text):
+        faults.append(f"{place}: say '{phrase}' in plainer words")
+
+
 def check_comments(path):
+    check_english(path.relative_to(TREE).as_posix(), "\n".join(re.findall(r'"(?:[^"\\\n]|\\.)*"', text_of(path))))
     comments = "\n".join(re.findall(r"//.*", text_of(path)))
     check_files(path.relative_to(TREE).as_posix(), comments, path.parent)
 
