@@ -34,9 +34,8 @@ class Communicator {
 
   [[nodiscard]] int rank() const { return rank_; }
   [[nodiscard]] int size() const { return size_; }
-  [[nodiscard]] int node_rank() const {
-    return node_rank_;
-  }  ///< among the ranks that share memory with this one
+  /// Among the ranks that share memory with this one.
+  [[nodiscard]] int node_rank() const { return node_rank_; }
   [[nodiscard]] int node_size() const { return node_size_; }
   [[nodiscard]] bool is_root() const { return rank_ == 0; }
   [[nodiscard]] MPI_Comm handle() const { return comm_; }

@@ -23,8 +23,8 @@ struct ExchangeStats {
   std::uint64_t growths = 0;        ///< times that slots grew after construction
   std::uint64_t halo_capacity = 0;  ///< bytes a halo message may have now
   std::uint64_t bulk_capacity = 0;  ///< bytes a fragment may have now
-  double flight_seconds =
-      0.0;  ///< halo: own send until the neighbour's message of that number was noticed
+  /// Halo: own send until the neighbour's message of that number was noticed.
+  double flight_seconds = 0.0;
   double bulk_seconds = 0.0;  ///< begin_bulk() until poll_bulk() was true
 
   [[nodiscard]] std::uint64_t messages() const { return halo_messages + bulk_messages; }
@@ -125,8 +125,8 @@ struct ExchangeOptions {
   std::size_t bulk_bytes =
       256 *
       1024;  ///< first size of a bulk fragment, equal on every rank; longer bulks go in rounds
-  double max_delay_seconds =
-      0.0;  ///< tests: hide arrived messages and hold sends up to this long; 0 = never
+  /// Tests: hide arrived messages and hold sends up to this long; 0 = never.
+  double max_delay_seconds = 0.0;
   std::uint64_t delay_seed = 0;
   int ranks_per_node = 0;  ///< tests: this many ranks in a row count as a node; 0: the real nodes
 };

@@ -13,10 +13,8 @@ namespace barchan {
 /// dynamic windows are slow and buggy.)
 class Window {
  public:
-  enum class Memory {
-    Private,
-    Shared
-  };  ///< Shared: MPI_Win_allocate_shared, all ranks on one node
+  /// Shared: MPI_Win_allocate_shared, all ranks on one node.
+  enum class Memory { Private, Shared };
 
   Window() = default;
   /// Zeroed memory, seen as zero by everybody when this returns. Collective.

@@ -40,12 +40,8 @@ struct Bond {
 template <int Dim>
 class BondSet {
  public:
-  enum Group {
-    Owned,
-    Left,
-    Right,
-    kNumGroups
-  };  ///< both ends owned, or the other end a ghost of that side
+  /// Both ends owned, or the other end a ghost of that side.
+  enum Group { Owned, Left, Right, kNumGroups };
 
   /// Takes a bond; if it is known, its state is replaced when `is_current`. @pre resolve() before
   /// the next step
@@ -87,9 +83,8 @@ class BondSet {
   /// As broken, but not counted: an end has left the domain. Until drop_broken.
   void cancel(std::int32_t bond) { broken_[static_cast<std::size_t>(bond)] = 1; }
   void drop_broken();
-  [[nodiscard]] std::int64_t num_broken() const {
-    return num_broken_;
-  }  ///< owned by their lower id, since the start
+  /// Owned by their lower id, since the start.
+  [[nodiscard]] std::int64_t num_broken() const { return num_broken_; }
   void set_num_broken(std::int64_t n) { num_broken_ = n; }
   /// Elastic energy of the bonds whose lower-id end is owned [J].
   [[nodiscard]] double energy(std::int32_t bond, const ParticleStore<Dim>& store,

@@ -72,8 +72,8 @@ struct BondLaw {
   double stiffness_ratio = 2.5;  ///< normal over shear stiffness per area; twisting uses shear
   double radius_factor = 1.0;    ///< section radius over the smaller particle radius
   double damping_ratio = 0.0;    ///< of critical, on the relative motion of the two ends
-  double normal_stiffness =
-      0.0;  ///< per section area [Pa/m]; when > 0 it stands for young_modulus / L
+  /// Per section area [Pa/m]; when > 0 it stands for young_modulus / L.
+  double normal_stiffness = 0.0;
   double tensile_strength = std::numeric_limits<double>::infinity();  ///< [Pa]
   double shear_strength = std::numeric_limits<double>::infinity();    ///< [Pa]
 };
@@ -102,8 +102,8 @@ struct WallSpec {
 /// A stage of the run; it ends after a time or when the kinetic-energy ratio is low enough.
 struct Stage {
   std::string name;
-  double local_damping =
-      0.0;  ///< Cundall's alpha: force reduced by alpha·|F|·sign(v), per component
+  /// Cundall's alpha: force reduced by alpha·|F|·sign(v), per component.
+  double local_damping = 0.0;
   double max_time = std::numeric_limits<double>::infinity();  ///< length of the stage [s]
   double kinetic_ratio = 0.0;  ///< end when kinetic over elastic energy falls below; 0 = never
 };

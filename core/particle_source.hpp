@@ -48,8 +48,8 @@ struct Hole {
 /// in `.data`. The `type` column counts materials from 1 in deck order unless
 /// ParticleSource::material is given.
 struct FileSource {
-  std::string
-      path;  ///< as opened: a relative path of the deck is already joined to the deck's folder
+  /// As opened: a relative path of the deck is already joined to the deck's folder.
+  std::string path;
   enum class Format { Csv, LammpsData } format = Format::Csv;
 };
 
@@ -72,8 +72,8 @@ struct PackingSource {
   Box region;
   SizeDistribution sizes;
   std::optional<std::int64_t> count;  ///< particles, > 0
-  std::optional<double>
-      solid_fraction;  ///< area (2D) or volume (3D) of particles over the region less its holes
+  /// Area (2D) or volume (3D) of particles over the region less its holes.
+  std::optional<double> solid_fraction;
   std::vector<Hole> holes;
   std::uint64_t seed = 1;
 };
@@ -83,8 +83,8 @@ struct RingSource {
   Vec3 center = Vec3::Zero();  ///< [m]
   double radius = 0.0;         ///< centre to disk centres [m]
   std::int64_t count = 0;      ///< disks, >= 3
-  double disk_radius =
-      0.0;  ///< [m]; the deck fills in radius·sin(pi/count), where neighbours just touch
+  /// [m]; the deck fills in radius·sin(pi/count), where neighbours just touch.
+  double disk_radius = 0.0;
   double start_angle = 0.0;  ///< of the first disk from the x axis [rad]
 };
 

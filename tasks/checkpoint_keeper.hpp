@@ -57,9 +57,8 @@ class CheckpointKeeper {
   /// not on the disk
   bool finish();
 
-  [[nodiscard]] std::int64_t last_begun() const {
-    return last_begun_;
-  }  ///< step, -1 before the first
+  /// Step, -1 before the first.
+  [[nodiscard]] std::int64_t last_begun() const { return last_begun_; }
   /// Where the newest complete checkpoint of this run is; rank 0; empty before the first.
   [[nodiscard]] const std::string& last_complete() const { return last_complete_; }
   [[nodiscard]] std::vector<std::string> take_warnings();

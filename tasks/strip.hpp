@@ -103,18 +103,16 @@ class Strip {
   /// Continues with another exchange. Between a seed or rebuild and the next step. Collective.
   void set_exchange(std::unique_ptr<Exchange> exchange);
   [[nodiscard]] std::size_t most_halo_bytes() const;  ///< of a message to a neighbour
-  [[nodiscard]] std::int64_t send_ns() const {
-    return send_ns_;
-  }  ///< in the exchange, sending halos
+  /// In the exchange, sending halos.
+  [[nodiscard]] std::int64_t send_ns() const { return send_ns_; }
   [[nodiscard]] const RebuildWaits& rebuild_waits() const { return waits_; }
   void restart_waits() { waits_ = {}; }  ///< setting up is not part of the loop
   void set_trace(Trace* trace) { trace_ = trace; }
   [[nodiscard]] const Neighbours& neighbours() const { return neighbours_; }
   [[nodiscard]] std::int64_t num_owned() const;
   [[nodiscard]] std::int64_t num_rebuilds() const { return num_rebuilds_; }
-  [[nodiscard]] std::int64_t num_migrations() const {
-    return num_migrations_;
-  }  ///< particles that left this rank
+  /// Particles that left this rank.
+  [[nodiscard]] std::int64_t num_migrations() const { return num_migrations_; }
   [[nodiscard]] std::size_t bytes() const;
   /// What this rank waits for, as messages say it: "rank 0: halo of step 17 from rank 1 (right)".
   [[nodiscard]] std::string name_of_halo(Side side) const;

@@ -12,8 +12,8 @@ namespace barchan {
 
 /// One row of the deck reference.
 struct KeyDoc {
-  std::string
-      table;  ///< as the reference heads it: `deck` for the top level, `[time]`, `[[wall]]`, ...
+  /// As the reference heads it: `deck` for the top level, `[time]`, `[[wall]]`, ...
+  std::string table;
   std::string key;
   std::string type;
   std::string unit;           ///< empty for none

@@ -21,8 +21,8 @@ struct PictureInput {
   std::span<const Vec3> positions;  ///< [m]
   std::span<const double> radii;    ///< [m]
   std::span<const double> values;   ///< colour of each particle; empty = all alike
-  bool values_are_kinds =
-      false;  ///< whole numbers from 0, each a colour of its own, instead of a scale
+  /// Whole numbers from 0, each a colour of its own, instead of a scale.
+  bool values_are_kinds = false;
   std::vector<std::string> kinds;  ///< their names, for the legend
   std::string label;               ///< of the colour bar, e.g. "speed [m/s]"
   std::string title;
