@@ -170,7 +170,7 @@ void check_limits(const LimitSpec& limits) {
           "limits.overlap_warning",
           fmt::format("overlap_warning = {:g} is beyond overlap_error = {:g}",
                       limits.overlap_warning, limits.overlap_error),
-          "warn below the error, or never: overlap_warning = 0");
+          "choose a smaller one, or overlap_warning = 0 for no warning");
 }
 
 void check_counts(const Model& model) {
