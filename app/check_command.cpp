@@ -9,6 +9,7 @@
 #include <barchan/app/commands.hpp>
 #include <barchan/app/loaded_deck.hpp>
 #include <barchan/app/readable.hpp>
+#include <barchan/core/force_grain.hpp>
 #include <barchan/tasks/memory_estimate.hpp>
 #include <barchan/tasks/stability.hpp>
 #include <barchan/tasks/strip_plan.hpp>
@@ -66,6 +67,14 @@ void print_particles(const LoadedDeck& loaded) {
               model.dimension == 2 ? "disks" : "spheres",
               grouped(static_cast<std::int64_t>(loaded.particles.bonds.size())).c_str(),
               table(rows, 2).c_str());
+}
+
+void print_grain(const Model& model, const ParticleSet& particles) {
+  const ForceGrain grain = force_grain(model, particles);
+  std::printf("  Forces are rounded to %s; sums are exact up to %.3g N.\n",
+              describe(grain, model, particles).c_str(), grain.most());
+  const std::string warning = coarse_grain_warning(grain, model, particles);
+  if (!warning.empty()) std::printf("  Warning: %s.\n", warning.c_str());
 }
 
 void print_walls(const Model& model) {
@@ -168,6 +177,7 @@ void check_deck(const CheckArguments& arguments) {
               model.title.c_str());
   print_particles(loaded);
   print_contacts(loaded);
+  print_grain(model, loaded.particles);
   print_walls(model);
   print_stages(model);
   print_step(model, limits);

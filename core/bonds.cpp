@@ -87,7 +87,10 @@ void BondSet<Dim>::resolve(ParticleStore<Dim>& store) {
     if (store.is_owned(j)) incidences_.push_back({j, i, index, true});
   }
   std::sort(incidences_.begin(), incidences_.end(), [&](const Incidence& p, const Incidence& q) {
-    return p.row != q.row ? p.row < q.row : store.precedes(p.partner, q.partner);
+    const auto id = [&](const Incidence& i) {
+      return store.id[static_cast<std::size_t>(i.partner)];
+    };
+    return p.row != q.row ? p.row < q.row : id(p) < id(q);
   });
   force_.assign(bonds_.size(), {});
   broken_.assign(bonds_.size(), 0);

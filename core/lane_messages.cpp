@@ -85,8 +85,7 @@ std::vector<ParticleRecord<Dim>> decode_ghosts(std::span<const std::byte> messag
   in.finish();
   for (std::size_t g = 0; g < ghosts.size(); ++g) {
     check(ghosts[g], world);
-    const bool is_next = g == 0 || std::pair(ghosts[g - 1].key, ghosts[g - 1].id) <
-                                       std::pair(ghosts[g].key, ghosts[g].id);
+    const bool is_next = g == 0 || ghosts[g - 1].key <= ghosts[g].key;
     if (!is_next || ghosts[g].key / world.grid.slab_size() != slab)
       refuse("ghosts out of order or of another slab");
   }

@@ -68,7 +68,7 @@ template <int Dim>
                                               const World<Dim>& world, int slab_begin,
                                               int slab_end);
 
-/// Ghosts of one slab, in canonical order. Errors: RunError.
+/// Ghosts of one slab, by cells. Errors: RunError.
 template <int Dim>
 [[nodiscard]] std::vector<ParticleRecord<Dim>> decode_ghosts(std::span<const std::byte> message,
                                                              const World<Dim>& world, int slab);

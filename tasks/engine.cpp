@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <utility>
 
 #include <barchan/comm/clock.hpp>
@@ -70,12 +71,13 @@ std::int64_t Simulation::EngineOf<Dim>::go_on(std::int64_t most) {
   plates_->drive(world_.walls, step_);
 
   StepFrame frame;
+  frame.step = step_;
   frame.kick = step_ == 0 ? 0.5 * world_.dt : world_.dt;
   for (int c = 0; c < 3; ++c) frame.gravity[c] = model_.gravity[c];
   frame.local_damping = model_.stages[static_cast<std::size_t>(stage_)].local_damping;
   const int steps = steps_in_a_go(most);
   graph_->run(frame, steps);
-  stop_if_fast();
+  stop_if_wrong();
 
   if (plates_->needs_forces(world_.walls)) plates_->collect(wall_sums(), step_);
   plates_->move(world_.walls);
@@ -114,18 +116,30 @@ int Simulation::EngineOf<Dim>::steps_in_a_go(std::int64_t most) {
   return steps_until(schedule_->next_part(step_));
 }
 
-/// The earliest step in which a lane was, and in that the first lane.
+/// The earliest step in which a lane went wrong, and in that the lowest id of a fast particle, or
+/// of one that bore too much.
 template <int Dim>
-void Simulation::EngineOf<Dim>::stop_if_fast() {
-  int first = -1;
+void Simulation::EngineOf<Dim>::stop_if_wrong() {
+  int steps = std::numeric_limits<int>::max();
   for (int l = 0; l < strip_->num_lanes(); ++l) {
-    if (strip_->lane(l).is_fast() &&
-        (first < 0 || graph_->steps_done(l) < graph_->steps_done(first)))
-      first = l;
+    if (strip_->lane(l).must_stop()) steps = std::min(steps, graph_->steps_done(l));
   }
-  if (first < 0) return;
-  step_ += graph_->steps_done(first) - 1;
-  report_fast(first);
+  if (steps == std::numeric_limits<int>::max()) return;
+  step_ += steps - 1;
+  int fast = -1;
+  Overload overload;
+  const auto id_in = [this](int l) {
+    const Lane<Dim>& lane = strip_->lane(l);
+    return lane.store().id[static_cast<std::size_t>(lane.first_fast_row())];
+  };
+  for (int l = 0; l < strip_->num_lanes(); ++l) {
+    const Lane<Dim>& lane = strip_->lane(l);
+    if (!lane.must_stop() || graph_->steps_done(l) != steps) continue;
+    overload.add(lane.overload());
+    if (lane.is_fast() && (fast < 0 || id_in(l) < id_in(fast))) fast = l;
+  }
+  if (fast >= 0) report_fast(fast);
+  report_overload(overload);
 }
 
 /// Chunks of about kChunkSeconds, by what the pairs have cost since the last rebuild. No bit
@@ -154,19 +168,25 @@ void Simulation::EngineOf<Dim>::update_lists() {
     must_save_ = true;
     forget_checkpoint_request();
   }
-  if (const auto answer = schedule_->take_answer()) judge(*answer);
+  if (const auto answer = schedule_->take_answer()) {
+    judge(*answer);
+    if (answer->skin > 0.0) next_skin_ = answer->skin;
+    must_rebuild_ = must_rebuild_ || next_skin_ != world_.skin;
+  }
   if (must_remove_) remove_outside();
-  if (!travelled && !must_rebuild_) return;
+  const bool is_test = options_.rebuild_every > 0 && step_ % options_.rebuild_every == 0;
+  if (!travelled && !must_rebuild_ && !is_test) return;
   size_chunks();
   const double begin = now();
-  const double walls_went = wall_distance2();
+  const double walls_outran = outrun_share(wall_distance2(), world_.skin);
+  world_.skin = next_skin_;
+  schedule_->set_skin(next_skin_);
   if (step_ >= options_.loss.step && communicator_.rank() + 1 == communicator_.size())
     strip_->lane(0).lose(std::exchange(options_.loss.what, Loss::Nothing));
   strip_->rebuild([this](const std::function<void(int)>& body) { graph_->for_each_lane(body); });
-  strip_->lane(0).note_travel(walls_went);
+  strip_->lane(0).note_outrun(walls_outran);
   for (std::size_t w = 0; w < world_.walls.size(); ++w)
     walls_at_rebuild_[w] = world_.walls[w].point;
-  watch_overlap();
   watch_growth();
   schedule_->rebuilt(step_);
   must_rebuild_ = false;

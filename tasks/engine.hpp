@@ -10,6 +10,7 @@
 #include <barchan/tasks/plates.hpp>
 #include <barchan/tasks/rebuild_schedule.hpp>
 #include <barchan/tasks/simulation.hpp>
+#include <barchan/tasks/skin_tuner.hpp>
 #include <barchan/tasks/step_graph.hpp>
 #include <barchan/tasks/strip.hpp>
 #include <barchan/tasks/world_setup.hpp>
@@ -33,6 +34,7 @@ class Simulation::Engine {
   [[nodiscard]] virtual std::int64_t num_owned() const = 0;
   [[nodiscard]] virtual std::string vector_width() const = 0;
   [[nodiscard]] virtual double skin() const = 0;
+  [[nodiscard]] virtual double force_grain() const = 0;
 
   virtual void save_checkpoint() = 0;
 
@@ -83,6 +85,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   [[nodiscard]] std::int64_t num_owned() const override { return strip_->num_owned(); }
   [[nodiscard]] std::string vector_width() const override { return name_of(world_.kernels.width); }
   [[nodiscard]] double skin() const override { return world_.skin; }
+  [[nodiscard]] double force_grain() const override { return world_.grain.size; }
   void save_checkpoint() override;
 
  private:
@@ -98,7 +101,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   void make_trace();
   std::int64_t go_on(std::int64_t most);
   [[nodiscard]] int steps_in_a_go(std::int64_t most);
-  void stop_if_fast();
+  void stop_if_wrong();
   void update_lists();
   void size_chunks();
   void update_stage();
@@ -123,6 +126,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   [[noreturn]] void report_outrun(const CheckNumbers& answer);
   [[noreturn]] void report_departures(const std::vector<Departure>& departures);
   [[noreturn]] void report_fast(int lane);
+  [[noreturn]] void report_overload(const Overload& overload);
   [[nodiscard]] std::string describe(const Suspect& suspect,
                                      const typename Lane<Dim>::Partners& touched) const;
   [[nodiscard]] typename Lane<Dim>::Partners partners_of(const Suspect& suspect);
@@ -136,6 +140,8 @@ class Simulation::EngineOf final : public Simulation::Engine {
   std::unique_ptr<Strip<Dim>> strip_;
   std::unique_ptr<StepGraph<Dim>> graph_;
   std::unique_ptr<RebuildSchedule> schedule_;
+  std::optional<SkinTuner> tuner_;  ///< of rank 0
+  double next_skin_ = 0.0;          ///< that all ranks agreed on [m]
   std::unique_ptr<Plates> plates_;
   std::vector<Vec3> walls_at_rebuild_;
   std::int64_t stage_begin_ = 0;

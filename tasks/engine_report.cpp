@@ -149,8 +149,20 @@ void Simulation::EngineOf<Dim>::report_fast(int l) {
                   s.speed2 < std::numeric_limits<double>::max()
                       ? fmt::format("it moves farther in one step than half the skin of {:.3g} m, "
                                     "so that contacts may be missed",
-                                    world_.skin)
+                                    2.0 * world_.most_travel)
                       : "its state is no longer finite"));
+}
+
+/// This rank alone knows, as with a fast particle.
+template <int Dim>
+void Simulation::EngineOf<Dim>::report_overload(const Overload& overload) {
+  throw StepError(
+      step_,
+      fmt::format(
+          "in step {} the contacts of particle {} press with {:.4g} N in all; sums of forces "
+          "are exact up to {:.4g} N, which follows from limits.overlap_error; less overlap at "
+          "the start or a smaller time.step would help, or a larger limits.overlap_error",
+          step_, overload.id, overload.force, world_.grain.most()));
 }
 
 template <int Dim>

@@ -84,11 +84,13 @@ Measures Simulation::EngineOf<Dim>::measure() {
     std::copy_n(from, ExactSum::kDigits, sum->digits().begin());
     from += ExactSum::kDigits;
   }
-  double maxima[3] = {mine.max_overlap, mine.max_speed, mine.max_overlap_share};
+  double maxima[4] = {mine.max_overlap, mine.max_speed, mine.max_overlap_share,
+                      mine.max_inverse_mass};
   communicator_.allreduce_max(std::span<double>(maxima));
   mine.max_overlap = maxima[0];
   mine.max_speed = maxima[1];
   mine.max_overlap_share = maxima[2];
+  mine.max_inverse_mass = maxima[3];
   overlap_ = std::max(overlap_, mine.max_overlap_share);
   for (std::size_t w = 0; w < walls.size(); ++w) {
     for (int c = 0; c < 3; ++c) {

@@ -201,6 +201,10 @@ void Simulation::write_trace(const std::string& path) const {
 double Simulation::skin() const {
   return engine().skin();
 }
+
+double Simulation::force_grain() const {
+  return engine_->force_grain();
+}
 std::size_t Simulation::memory_bytes() const {
   return engine().memory_bytes();
 }

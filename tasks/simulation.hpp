@@ -119,7 +119,7 @@ class Simulation {
   [[nodiscard]] std::string vector_width() const;   ///< in use
   [[nodiscard]] const Communicator& communicator() const;
 
-  /// Calls `visit` for every particle that this rank owns, in canonical order.
+  /// Calls `visit` for every particle that this rank owns, in any order.
   void for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const;
   [[nodiscard]] std::int64_t num_owned() const;
   [[nodiscard]] std::int64_t num_particles() const;     ///< on all ranks, now
@@ -169,6 +169,7 @@ class Simulation {
   /// @pre RunOptions::trace. Errors: RunError when the file cannot be written.
   void write_trace(const std::string& path) const;
   [[nodiscard]] double skin() const;
+  [[nodiscard]] double force_grain() const;        ///< of this run [N], see ForceGrain
   [[nodiscard]] std::size_t memory_bytes() const;  ///< particles, lists, history of this rank
 
  private:

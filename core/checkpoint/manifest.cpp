@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kVersion = 2;
+constexpr int kVersion = 4;
 constexpr const char* kFormat = "barchan checkpoint";
 constexpr std::string_view kHashMember = ",\n\"xxh3\": \"";
 constexpr std::string_view kEnd = "\"}\n";
@@ -69,8 +69,8 @@ ManifestFile read_file(const ordered_json& node, std::size_t rank) {
   ManifestFile f;
   f.seal = {static_cast<std::uint64_t>(count_at(node, "bytes")),
             parse_hex(node.at("hash").get<std::string>())};
-  f.slab_begin = count(node.at("slabs").at(0), "slabs", INT32_MAX);
-  f.slab_end = count(node.at("slabs").at(1), "slabs", INT32_MAX);
+  f.lo = node.at("strip").at(0).get<double>();
+  f.hi = node.at("strip").at(1).get<double>();
   f.particles = count_at(node, "particles");
   f.contacts = count_at(node, "contacts");
   f.wall_contacts = count_at(node, "wall_contacts");
@@ -128,7 +128,7 @@ std::string manifest_text(const Manifest& manifest) {
     files.push_back({{"name", rank_file_name(files.size())},
                      {"bytes", f.seal.bytes},
                      {"hash", hex(f.seal.hash)},
-                     {"slabs", {f.slab_begin, f.slab_end}},
+                     {"strip", {f.lo, f.hi}},
                      {"particles", f.particles},
                      {"contacts", f.contacts},
                      {"wall_contacts", f.wall_contacts},

@@ -11,7 +11,7 @@ namespace barchan {
 /// What a manifest says about the file of one rank.
 struct ManifestFile {
   RankFileSeal seal;
-  std::int64_t slab_begin = 0, slab_end = 0;  ///< in which its particles lay at the last rebuild
+  double lo = 0.0, hi = 0.0;  ///< where its particles lie along the strip axis, within the box [m]
   std::int64_t particles = 0, contacts = 0, wall_contacts = 0, bonds = 0;
 };
 

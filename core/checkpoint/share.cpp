@@ -65,7 +65,6 @@ void check_particles(const CheckpointShare& s, const Widths& w, const ShareLimit
   const std::size_t n = s.ids.size();
   check.require(n < static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()) - 8,
                 "too many particles in one share");
-  check.size(C::References, s.references.size(), n * w.space);
   check.size(C::Positions, s.positions.size(), n * w.space);
   check.size(C::Velocities, s.velocities.size(), n * w.space);
   check.size(C::SurfaceSpeeds, s.surface_speeds.size(), n * w.spins);
@@ -74,7 +73,7 @@ void check_particles(const CheckpointShare& s, const Widths& w, const ShareLimit
   check.size(C::Types, s.types.size(), n);
   check.size(C::Flags, s.flags.size(), n);
   if (!s.externals.empty()) check.size(C::Externals, s.externals.size(), n * w.force);
-  check.finite(C::References, s.references);
+  check.finite(C::Positions, s.positions);
   check.finite(C::Radii, s.radii);
   check.below(C::Types, s.types, limits.num_materials);
 }
@@ -108,8 +107,6 @@ std::string name_of(CheckpointColumn column) {
       return "outruns";
     case C::Ids:
       return "ids";
-    case C::References:
-      return "references";
     case C::Positions:
       return "positions";
     case C::Velocities:

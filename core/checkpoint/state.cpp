@@ -11,10 +11,9 @@
 namespace barchan {
 namespace {
 
-constexpr std::array<std::string_view, 9> kParts{
+constexpr std::array<std::string_view, 8> kParts{
     "dimension and domain", "time.step", "gravity", "material",
-    "contact and pair",     "bond",      "wall",    "stage",
-    "search.skin"};
+    "contact and pair",     "bond",      "wall",    "stage"};
 
 [[noreturn]] void refuse(const std::string& file, const std::string& what,
                          const std::string& remedy) {
@@ -28,14 +27,13 @@ CheckpointState take_state(ByteReader& in) {
   s.stage = in.take<std::int32_t>();
   s.skin = in.take<double>();
   s.reach = in.take<double>();
+  s.grain = in.take<double>();
   s.start_particles = in.take<std::int64_t>();
   s.has_bonds = in.take<std::uint8_t>() != 0;
   s.num_particles = in.take<std::int64_t>();
-  s.check_step = in.take<std::int64_t>();
-  s.interval = in.take<std::int32_t>();
-  s.has_check = in.take<std::uint8_t>() != 0;
-  s.check = in.take<std::array<double, 4>>();
-  s.check_particles = in.take<std::int64_t>();
+  s.look_step = in.take<std::int64_t>();
+  s.look_outside = in.take<std::int64_t>();
+  s.look_overlap = in.take<double>();
   for (std::int64_t* count :
        {&s.left_particles, &s.left_contacts, &s.left_wall_contacts, &s.left_bonds})
     *count = in.take<std::int64_t>();
@@ -107,14 +105,13 @@ std::vector<std::byte> encode(const CheckpointState& s) {
   out.put(s.stage);
   out.put(s.skin);
   out.put(s.reach);
+  out.put(s.grain);
   out.put(s.start_particles);
   out.put(static_cast<std::uint8_t>(s.has_bonds));
   out.put(s.num_particles);
-  out.put(s.check_step);
-  out.put(s.interval);
-  out.put(static_cast<std::uint8_t>(s.has_check));
-  out.put(s.check);
-  out.put(s.check_particles);
+  out.put(s.look_step);
+  out.put(s.look_outside);
+  out.put(s.look_overlap);
   for (const std::int64_t count :
        {s.left_particles, s.left_contacts, s.left_wall_contacts, s.left_bonds})
     out.put(count);
@@ -140,8 +137,9 @@ CheckpointState decode_state(std::span<const std::byte> bytes, const std::string
   const bool is_sane = state.step >= 0 && state.stage >= 0 && state.stage_begin >= 0 &&
                        state.stage_begin <= state.step && state.skin >= 0.0 &&
                        std::isfinite(state.skin) && positive(state.reach) &&
-                       state.start_particles >= 0 && state.interval >= 0 && state.interval < 1024 &&
-                       state.check_step >= 0 && std::abs(state.check_step - state.step) < 1024;
+                       state.start_particles >= 0 && positive(state.grain) &&
+                       state.look_step >= -1 && state.look_step <= state.step &&
+                       (state.look_step < 0 || state.step - state.look_step < 16);
   if (!is_sane) refuse(file, "the state is not valid", "take another checkpoint");
   return state;
 }
@@ -167,10 +165,6 @@ std::vector<std::uint64_t> fingerprint(const Model& model) {
         for (const Stage& s : model.stages) {
           for (const double value : {s.local_damping, s.max_time, s.kinetic_ratio}) out.put(value);
         }
-      }),
-      hash_of([&](ByteWriter& out) {
-        out.put(static_cast<std::uint8_t>(model.search.skin.has_value()));
-        out.put(model.search.skin.value_or(0.0));
       }),
   };
 }

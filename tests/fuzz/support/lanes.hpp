@@ -29,7 +29,6 @@ class Sample {
     lanes_[0]->band(Lane<Dim>::Right).exists = true;
     lanes_[0]->band(Lane<Dim>::Right).returns = returns;
     lanes_[1]->band(Lane<Dim>::Left).exists = true;
-    lanes_[1]->band(Lane<Dim>::Left).ghosts_first = true;
     lanes_[1]->band(Lane<Dim>::Left).returns = returns;
   }
 
@@ -107,7 +106,6 @@ class Sample {
     lane.take_ghosts({}, {});
     lane.restore_history();
     lane.cut_chunks(64);
-    lane.put_back(share);
     for (int n = 0; n < 2; ++n) {
       lane.begin_step({world_.dt, {}, 0.0});
       for (int c = 0; c < lane.num_chunks(); ++c) lane.run_chunk(c);

@@ -38,7 +38,7 @@ CheckpointShare some_share(int num_particles, std::int64_t first_id) {
   const auto number = [&random] { return static_cast<double>(random() % 1000) * 0.001 - 0.3; };
   for (int p = 0; p < num_particles; ++p) {
     s.ids.push_back(first_id + p);
-    for (auto* column : {&s.references, &s.positions, &s.velocities})
+    for (auto* column : {&s.positions, &s.velocities})
       column->insert(column->end(), {number(), number()});
     s.surface_speeds.push_back(number());
     s.radii.push_back(0.05);
@@ -67,10 +67,9 @@ CheckpointState some_state() {
   s.skin = 0.01;
   s.reach = 0.13;
   s.start_particles = s.num_particles = 40;
-  s.check_step = 498;
-  s.interval = 4;
-  s.has_check = true;
-  s.check = {1e-4, 2.5, 0.0};
+  s.grain = 0x1p-40;
+  s.look_step = 496;
+  s.look_outside = 7;
   s.plate_forces = {{499, {1, 2, 3}}, {498, {}}};
   s.walls.resize(2);
   s.walls[1].point[1] = 0.75;
@@ -154,7 +153,7 @@ TEST(Checkpoint, BringsBackTheState) {
   const CheckpointState state = decode_state(encode(expected), "file");
 
   EXPECT_EQ(encode(state), encode(expected));
-  EXPECT_EQ(state.check[1], 2.5);
+  EXPECT_EQ(state.look_outside, 7);
   EXPECT_EQ(state.plate_forces[0].digits, expected.plate_forces[0].digits);
   EXPECT_EQ(state.walls[1].point[1], 0.75);
 }
@@ -251,9 +250,9 @@ TEST(Checkpoint, RefusesColumnsThatDoNotFitEachOther) {
     spoil(share);
     EXPECT_THROW(check_share(share, kLimits, "file"), InputError);
   };
-  refuses([](CheckpointShare& s) { s.references.pop_back(); });
+  refuses([](CheckpointShare& s) { s.positions.pop_back(); });
   refuses([](CheckpointShare& s) { s.velocities.push_back(0.0); });
-  refuses([](CheckpointShare& s) { s.references[3] = std::nan(""); });
+  refuses([](CheckpointShare& s) { s.positions[3] = std::nan(""); });
   refuses([](CheckpointShare& s) { s.types[0] = 3; });
   refuses([](CheckpointShare& s) { s.contact_ids.pop_back(); });
   refuses([](CheckpointShare& s) { s.contact_springs.pop_back(); });

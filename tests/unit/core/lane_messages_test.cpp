@@ -101,6 +101,9 @@ TEST(LaneMessages, RefuseGhostsOutOfOrderOrOfAnotherSlab) {
   const World<2> world = world_with_a_wall_and_a_bond();
   ParticleRecord<2> first = a_migration(world).particles[0], second = first;
   second.id = 8;
+  first.motion[1] -= 1.0;  // the cell before
+  first.key = world.grid.key(first.motion);
+  ASSERT_GT(second.key, first.key);
   const int slab = static_cast<int>(first.key / world.grid.slab_size());
   const auto decode = [&world](const std::vector<ParticleRecord<2>>& ghosts, int of_slab) {
     std::vector<std::byte> message;
@@ -110,7 +113,6 @@ TEST(LaneMessages, RefuseGhostsOutOfOrderOrOfAnotherSlab) {
 
   EXPECT_EQ(decode({first, second}, slab), 2U);
   EXPECT_THROW(decode({second, first}, slab), RunError);
-  EXPECT_THROW(decode({first, first}, slab), RunError);
   EXPECT_THROW(decode({first}, slab + 1), RunError);
 }
 
