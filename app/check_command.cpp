@@ -10,6 +10,7 @@
 #include <barchan/app/loaded_deck.hpp>
 #include <barchan/app/readable.hpp>
 #include <barchan/core/force_grain.hpp>
+#include <barchan/core/generators/check_walls.hpp>
 #include <barchan/tasks/memory_estimate.hpp>
 #include <barchan/tasks/stability.hpp>
 #include <barchan/tasks/strip_plan.hpp>
@@ -179,6 +180,8 @@ void check_deck(const CheckArguments& arguments) {
   print_contacts(loaded);
   print_grain(model, loaded.particles);
   print_walls(model);
+  for (const std::string& what : walls_to_come_in_particles(model, loaded.particles))
+    std::printf("  Warning: %s.\n", what.c_str());
   print_stages(model);
   print_step(model, limits);
   print_strips(loaded, arguments.ranks);

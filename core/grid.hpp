@@ -23,6 +23,9 @@ double distance2(const PeriodicBox& box, const double* p, const double* q) {
   return d2;
 }
 
+/// @param dimension  axes beyond it do not wrap
+[[nodiscard]] PeriodicBox periodic_box(const Domain& domain, int dimension);
+
 /// The one grid of a run: lists are built by its cells, and cuts between strips lie on its faces.
 ///
 /// Cells are at least `cutoff` wide, so a particle's partners are in its own cell or in a

@@ -30,6 +30,7 @@ struct CheckpointShare;
 ///
 /// The steady step (`E precedes F` means E happens before F):
 ///
+///   press_plates       precedes run_chunk(0), where there are loaded plates
 ///   run_chunk(c)       precedes run_chunk(c + 1)
 ///   run_chunk(0)       precedes finish_band(Left)
 ///   the last chunk     precedes finish_band(Right)
@@ -49,6 +50,9 @@ class Lane {
   explicit Lane(World<Dim>& world) : world_(&world) {}
 
   // ---- the step (lane_step.cpp)
+  /// Contacts with loaded plates, before the step's other forces: their forces on the plates are
+  /// added to `sums`, one a wall. Needs owned rows only.
+  void press_plates(const StepFrame& frame, std::span<WallSums> sums);
   void begin_step(const StepFrame& frame);
   [[nodiscard]] int num_chunks() const { return static_cast<int>(chunks_.size()) - 1; }
   void run_chunk(int chunk);
@@ -139,7 +143,7 @@ class Lane {
   [[nodiscard]] const BondSet<Dim>& bonds() const { return bonds_; }
   WallContacts<Dim>& wall_contacts() { return walls_; }
   [[nodiscard]] const WallContacts<Dim>& wall_contacts() const { return walls_; }
-  /// Force of the last step on walls that move, and their work since the start.
+  /// Of all walls the work since the start.
   std::vector<WallSums>& wall_sums() { return wall_sums_; }
   [[nodiscard]] std::vector<WallSums> measure_walls() const;
   Band& band(Side side) { return bands_[side]; }
@@ -210,6 +214,9 @@ class Lane {
   }
   void finish_rows(std::int32_t begin, std::int32_t end, bool has_extras);
   void wrap_rows(Rows rows);
+  [[nodiscard]] typename WallContacts<Dim>::Frame wall_frame(double dt) const {
+    return {world_->wall_view(), &world_->laws, dt};
+  }
   void compute_bonds(typename BondSet<Dim>::Group group);
   void unbind(std::int32_t bond);
   void research_owned();

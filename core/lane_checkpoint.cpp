@@ -62,6 +62,8 @@ void Lane<Dim>::save(CheckpointShare& share) {
     if (!has_spring(c)) continue;
     share.wall_contact_ids.push_back(store_.id[static_cast<std::size_t>(c.row)]);
     share.wall_contact_walls.push_back(c.wall);
+    share.wall_contact_images.insert(share.wall_contact_images.end(), c.image.begin(),
+                                     c.image.end());
     share.wall_contact_springs.insert(share.wall_contact_springs.end(), c.spring,
                                       c.spring + L::kSprings);
   }
@@ -138,7 +140,9 @@ void Lane<Dim>::queue_links(const CheckpointShare& share,
   for (std::size_t k = 0; k < share.wall_contact_ids.size(); ++k) {
     const auto row = row_of.find(share.wall_contact_ids[k]);
     if (row == row_of.end()) continue;
-    WallContact<Dim> c{row->second, share.wall_contact_walls[k], {}};
+    WallContact<Dim> c{row->second, share.wall_contact_walls[k], {}, {}};
+    std::copy_n(share.wall_contact_images.data() + k * c.image.size(), c.image.size(),
+                c.image.begin());
     std::copy_n(share.wall_contact_springs.data() + k * L::kSprings, int{L::kSprings}, c.spring);
     old_walls_.push_back(c);
   }

@@ -196,17 +196,15 @@ void Lane<Dim>::restore_history() {
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.bonds().size()); ++b)
     imbalance_.bonds += counts_bond(b) ? 1 : 0;
 
-  walls_.search(store_, world_->wall_specs, world_->walls, world_->skin);
+  walls_.search(store_, world_->wall_view(), world_->skin);
   for (WallContact<Dim>& c : old_walls_) c.row = new_row_[static_cast<std::size_t>(c.row)];
-  std::sort(old_walls_.begin(), old_walls_.end(), [](const auto& p, const auto& q) {
-    return std::pair(p.row, p.wall) < std::pair(q.row, q.wall);
-  });
+  std::sort(old_walls_.begin(), old_walls_.end(),
+            [](const auto& p, const auto& q) { return key_of(p) < key_of(q); });
   auto old = old_walls_.begin();
   for (WallContact<Dim>& c : walls_.list()) {
-    while (old != old_walls_.end() && std::pair(old->row, old->wall) < std::pair(c.row, c.wall))
-      ++old;
+    while (old != old_walls_.end() && key_of(*old) < key_of(c)) ++old;
     if (old == old_walls_.end()) break;
-    if (old->row != c.row || old->wall != c.wall) continue;
+    if (key_of(*old) != key_of(c)) continue;
     if (has_spring(*old) && loses(Loss::WallContact)) continue;
     std::copy_n(old->spring, int{L::kSprings}, c.spring);
     if (has_spring(c)) ++imbalance_.wall_contacts;

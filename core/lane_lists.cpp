@@ -90,7 +90,7 @@ void Lane<Dim>::cut_chunks(std::int64_t chunk_pairs) {
   }
   std::int32_t row = bands_[Left].rows.end;
   for (Block& block : blocks_) {
-    const auto& walls = walls_.list();
+    const auto walls = walls_.list();
     const auto wall =
         std::lower_bound(walls.begin(), walls.end(), row,
                          [](const WallContact<Dim>& c, std::int32_t r) { return c.row < r; });
@@ -178,7 +178,7 @@ std::size_t Lane<Dim>::bytes() const {
       store_.bytes() + pairs_.bytes() + bonds_.bytes() + planes_.bytes() +
       kept_.capacity() * sizeof(KeptContact) + loose_.capacity() * sizeof(LooseContact<Dim>) +
       8 * row_begin_.capacity() + 4 * (cells_.start.capacity() + new_row_.capacity()) +
-      blocks_.capacity() * sizeof(Block) + walls_.list().capacity() * sizeof(WallContact<Dim>);
+      blocks_.capacity() * sizeof(Block) + walls_.bytes();
   for (const Band& band : bands_) total += band.across.bytes() + band.planes.bytes();
   return total;
 }

@@ -72,11 +72,10 @@ void measure_wall_contacts(const Lane<Dim>& lane, Measures& m) {
   const auto& store = lane.store();
   const auto& world = lane.world();
   for (const WallContact<Dim>& c : lane.wall_contacts().list()) {
-    double to_wall[3] = {};
     const auto w = static_cast<std::size_t>(c.wall);
     const double overlap =
         store.radius(c.row) -
-        WallContacts<Dim>::nearest(world.wall_specs[w], world.walls[w], store.x(c.row), to_wall);
+        world.wall_shapes[w].foot(world.walls[w].point, c.image, store.x(c.row)).distance;
     if (overlap <= 0.0) continue;
     const double* law =
         world.laws.view().rows +
@@ -116,7 +115,7 @@ template <int Dim>
 std::vector<WallSums> Lane<Dim>::measure_walls() const {
   std::vector<WallSums> sums(world_->walls.size());
   for (std::size_t w = 0; w < wall_sums_.size(); ++w) sums[w].work = wall_sums_[w].work;
-  walls_.measure(store_, {world_->wall_specs, world_->walls, &world_->laws, world_->dt}, sums);
+  walls_.measure(store_, wall_frame(world_->dt), sums);
   return sums;
 }
 

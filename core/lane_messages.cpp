@@ -36,6 +36,10 @@ void check_links(const Migration<Dim>& m, const World<Dim>& world) {
   for (const auto& w : m.walls) {
     if (!is_below(w.number, n) || !is_below(w.wall, world.walls.size()))
       refuse("a contact with a wall that does not exist, or of a particle that is not in it");
+    for (const std::int32_t image : w.image) {
+      if (image <= -kFarthestImage || image >= kFarthestImage)
+        refuse("a contact with a wall that is too far away");
+    }
   }
   for (const auto& b : m.bonds) {
     const bool is_right = b.bond.id_a > 0 && b.bond.id_a < b.bond.id_b &&

@@ -107,7 +107,7 @@ void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byt
       old_walls_.push_back(c);
       continue;
     }
-    WallRecord<Dim> w{number[at], c.wall, {}};
+    WallRecord<Dim> w{number[at], c.wall, c.image, {}};
     std::copy_n(c.spring, int{L::kSprings}, w.spring);
     out[static_cast<std::size_t>(goes_[at] - 1)].walls.push_back(w);
   }
@@ -156,7 +156,7 @@ void Lane<Dim>::absorb(std::span<const std::byte> message) {
     loose_.push_back(c);
   }
   for (const auto& w : walls) {
-    WallContact<Dim> c{first + w.number, w.wall, {}};
+    WallContact<Dim> c{first + w.number, w.wall, w.image, {}};
     std::copy_n(w.spring, int{L::kSprings}, c.spring);
     old_walls_.push_back(c);
   }

@@ -41,6 +41,11 @@ PairJob Lane<Dim>::job(PairList& list) const {
 }
 
 template <int Dim>
+void Lane<Dim>::press_plates(const StepFrame& frame, std::span<WallSums> sums) {
+  walls_.press(store_, wall_frame(spring_step(frame, world_->dt)), sums);
+}
+
+template <int Dim>
 void Lane<Dim>::begin_step(const StepFrame& frame) {
   frame_ = frame;
   wraps_now_ = world_->grid.box().any() && (frame.step + 1) % kEventSteps == 0;
@@ -52,7 +57,6 @@ void Lane<Dim>::begin_step(const StepFrame& frame) {
   wall_sums_.resize(world_->walls.size());
   const bool is_carry_due = ++steps_since_start_ % kCarryEvery == 0;
   for (WallSums& sums : wall_sums_) {
-    for (ExactSum& force : sums.force) force = {};
     if (is_carry_due) sums.work.carry();
   }
   if (!bonds_.empty()) compute_bonds(BondSet<Dim>::Owned);
@@ -82,8 +86,7 @@ void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extra
   if (has_extras || !store_.external.empty()) {
     bonds_.add_to_rows(store_, begin, end);
     const double dt = spring_step(frame_, world_->dt);
-    walls_.add_to_rows(store_, {world_->wall_specs, world_->walls, &world_->laws, dt}, wall_sums_,
-                       begin, end);
+    walls_.add_to_rows(store_, wall_frame(dt), wall_sums_, begin, end);
     if (!store_.external.empty()) {
       const auto from = static_cast<std::size_t>(begin) * L::kForce,
                  to = static_cast<std::size_t>(end) * L::kForce;
@@ -111,6 +114,7 @@ void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extra
 /// At fixed steps, for what a position loses around the end of the box is part of the state.
 template <int Dim>
 void Lane<Dim>::wrap_rows(Rows rows) {
+  walls_.foresee_wrap(store_, world_->grid, world_->wall_shapes, rows);
   for (std::int32_t i = rows.begin; i < rows.end; ++i) world_->grid.wrap(store_.x(i));
 }
 

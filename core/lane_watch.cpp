@@ -173,12 +173,12 @@ typename Lane<Dim>::Partners Lane<Dim>::partners_before_step(std::int32_t row) c
     if (band.exists) look(band.across);
   }
   std::sort(found.ids.begin(), found.ids.end());
-  double to_wall[3] = {};
   for (const WallContact<Dim>& c : walls_.list()) {
     const auto w = static_cast<std::size_t>(c.wall);
-    if (c.row != row) continue;
-    if (!is_finite || WallContacts<Dim>::nearest(world_->wall_specs[w], world_->walls[w], at.data(),
-                                                 to_wall) < store_.radius(row))
+    if (c.row != row || (!found.walls.empty() && found.walls.back() == c.wall)) continue;
+    const Vec3& point = world_->walls[w].point;
+    if (!is_finite ||
+        world_->wall_shapes[w].foot(point, c.image, at.data()).distance < store_.radius(row))
       found.walls.push_back(c.wall);
   }
   return found;
@@ -190,13 +190,12 @@ WorstOverlap Lane<Dim>::worst_overlap() const {
   const PeriodicBox& box = world_->grid.box();
   take_worst_pair(store_, box, pairs_, worst);
   if (bands_[Left].exists) take_worst_pair(store_, box, bands_[Left].across, worst);
-  double to_wall[3] = {};
   for (const WallContact<Dim>& c : walls_.list()) {
     const auto w = static_cast<std::size_t>(c.wall);
     const double radius = store_.radius(c.row);
     const double overlap =
-        radius - WallContacts<Dim>::nearest(world_->wall_specs[w], world_->walls[w],
-                                            store_.x(c.row), to_wall);
+        radius -
+        world_->wall_shapes[w].foot(world_->walls[w].point, c.image, store_.x(c.row)).distance;
     WorstOverlap here{overlap / radius, overlap, store_.id[static_cast<std::size_t>(c.row)], 0,
                       c.wall,           {}};
     std::copy_n(store_.x(c.row), Dim, here.position);

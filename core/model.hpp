@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <barchan/core/error.hpp>
 #include <barchan/core/vec.hpp>
 
 // The contents of a deck, checked and in SI, for 2D and 3D alike (2D leaves z at zero).
@@ -97,6 +98,7 @@ struct WallSpec {
   double mass = 0.0;  ///< of a loaded plate [kg]
   double damping = 0.0;  ///< viscous, on a loaded plate [N·s/m]
   int from_stage = 0;    ///< absent before this stage
+  SourcePlace place;     ///< in the deck, if it comes from one
 };
 
 /// A stage of the run; it ends after a time or when the kinetic-energy ratio is low enough.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <barchan/core/bonds.hpp>
@@ -28,12 +29,28 @@ struct World {
   KernelSet kernels;
   std::vector<BondLaw> bond_laws;
   std::vector<WallSpec> wall_specs;
+  std::vector<WallShape<Dim>> wall_shapes;
   std::vector<WallState> walls;
   ContactSearchKind search = ContactSearchKind::Cells;
   double skin = 0.0;         ///< that the next lists get [m]
   double most_travel = 0.0;  ///< in a step, beyond which contacts may be missed [m]
   double dt = 0.0;           ///< [s]
   std::int64_t num_particles = 0;
+
+  /// Walls where the run begins. @pre the grid is made
+  void set_walls(std::span<const WallSpec> specs) {
+    wall_specs.assign(specs.begin(), specs.end());
+    wall_shapes.clear();
+    walls.clear();
+    for (const WallSpec& spec : specs) {
+      wall_shapes.emplace_back(spec, grid.box());
+      WallState& state = walls.emplace_back();
+      state.point = spec.point;
+      state.velocity = spec.velocity;
+      state.is_active = spec.from_stage <= 0;
+    }
+  }
+  [[nodiscard]] WallView<Dim> wall_view() const { return {wall_specs, wall_shapes, walls}; }
 };
 
 /// Every so many steps comes what must not depend on when lists are rebuilt: positions go around

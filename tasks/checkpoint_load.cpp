@@ -11,6 +11,7 @@
 #include <barchan/core/exact_sum.hpp>
 #include <barchan/core/layout.hpp>
 #include <barchan/core/simd/scalar.hpp>
+#include <barchan/core/wall_shape.hpp>
 #include <barchan/tasks/checkpoint_read.hpp>
 #include <barchan/tasks/results/agree.hpp>
 #include <barchan/tasks/strip_plan.hpp>
@@ -58,6 +59,7 @@ void take_links(const CheckpointShare& from, const Ids& mine, CheckpointShare& t
     if (!mine.contains(from.wall_contact_ids[k])) continue;
     take(from.wall_contact_ids, k, 1, to.wall_contact_ids);
     take(from.wall_contact_walls, k, 1, to.wall_contact_walls);
+    take(from.wall_contact_images, k, WallImage().size(), to.wall_contact_images);
     take(from.wall_contact_springs, k, kSprings, to.wall_contact_springs);
   }
   for (std::size_t k = 0; k < from.bond_laws.size(); ++k) {

@@ -7,9 +7,12 @@
 #include <limits>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <barchan/comm/clock.hpp>
 #include <barchan/comm/mpi_session.hpp>
 #include <barchan/core/error.hpp>
+#include <barchan/core/generators/check_walls.hpp>
 #include <barchan/tasks/stop_request.hpp>
 
 namespace barchan {
@@ -68,7 +71,6 @@ std::int64_t Simulation::EngineOf<Dim>::go_on(std::int64_t most) {
   if (schedule_->is_check_due(step_))
     schedule_->begin_check(check_numbers(), {stop_is_requested(), wants_checkpoint()});
   schedule_->poll();
-  plates_->drive(world_.walls, step_);
 
   StepFrame frame;
   frame.step = step_;
@@ -76,10 +78,12 @@ std::int64_t Simulation::EngineOf<Dim>::go_on(std::int64_t most) {
   for (int c = 0; c < 3; ++c) frame.gravity[c] = model_.gravity[c];
   frame.local_damping = model_.stages[static_cast<std::size_t>(stage_)].local_damping;
   const int steps = steps_in_a_go(most);
+  const bool drives_plates = plates_->are_driven(world_.walls);
+  if (drives_plates) press_plates(frame);
   graph_->run(frame, steps);
   stop_if_wrong();
 
-  if (plates_->needs_forces(world_.walls)) plates_->collect(wall_sums(), step_);
+  if (drives_plates) kick_plates();
   plates_->move(world_.walls);
   step_ += steps;
   is_in_step_ = false;
@@ -96,7 +100,7 @@ int Simulation::EngineOf<Dim>::steps_in_a_go(std::int64_t most) {
   const bool walls_stand = std::all_of(
       world_.walls.begin(), world_.walls.end(),
       [](const WallState& wall) { return !wall.is_active || wall.velocity == Vec3::Zero(); });
-  if (!is_last_stage || !walls_stand || plates_->needs_forces(world_.walls)) return 1;
+  if (!is_last_stage || !walls_stand || plates_->are_driven(world_.walls)) return 1;
   const auto steps_until = [&](std::int64_t end) {
     std::int64_t steps = 1;
     end = std::min(end, step_ + most);
@@ -220,21 +224,60 @@ void Simulation::EngineOf<Dim>::enter_stage(int stage) {
   stage_begin_ = step_;
   for (std::size_t w = 0; w < world_.walls.size(); ++w) {
     const bool active = world_.wall_specs[w].from_stage <= stage;
-    if (active != world_.walls[w].is_active) must_rebuild_ = true;  // walls come into the lists
+    if (active == world_.walls[w].is_active) continue;
+    must_rebuild_ = true;  // walls come into the lists
     world_.walls[w].is_active = active;
+    refuse_intruders(w);
   }
 }
 
+/// Collective. A wall that appears where a particle is would throw it out.
 template <int Dim>
-std::vector<WallSums> Simulation::EngineOf<Dim>::wall_sums() const {
-  std::vector<WallSums> sums(world_.walls.size());
-  for (int l = 0; l < strip_->num_lanes(); ++l) {
-    const auto& mine = strip_->lane(l).wall_sums();
-    for (std::size_t w = 0; w < mine.size(); ++w) {
-      for (int c = 0; c < 3; ++c) sums[w].force[c].add(mine[w].force[c]);
-    }
-  }
-  return sums;
+void Simulation::EngineOf<Dim>::refuse_intruders(std::size_t wall) {
+  std::int64_t first = 0, count = 0;
+  std::string what;
+  for_each_owned([&](const OwnedParticle& p) {
+    ParticleData here;
+    here.id = p.id;
+    here.radius = p.radius;
+    here.position = p.position;
+    here.fixed = std::isinf(p.mass);
+    const WallFoot foot =
+        world_.wall_shapes[wall].foot(world_.walls[wall].point, p.position.data());
+    const auto found = intrusion(world_.wall_specs[wall], foot, here, Dim);
+    if (!found) return;
+    ++count;
+    if (first != 0 && first < p.id) return;
+    first = p.id;
+    what = *found;
+  });
+  communicator_.allreduce_sum(std::span(&count, 1));
+  if (count == 0) return;
+  constexpr double kNone = -std::numeric_limits<double>::infinity();
+  what = from_rank_with_most(first == 0 ? kNone : -static_cast<double>(first), what);
+  throw AgreedError(fmt::format(
+      "at step {} wall '{}' appears with stage '{}' where particles are: {}{}; let it appear "
+      "elsewhere or later, or take particles away from there",
+      step_, model_.walls[wall].name, model_.stages[static_cast<std::size_t>(stage_)].name, what,
+      count == 1 ? "" : fmt::format(", and {} more", count - 1)));
+}
+
+/// What particles press loaded plates with, on its way to all ranks while the step is computed.
+/// Contacts with plates are few, so one thread does all lanes.
+template <int Dim>
+void Simulation::EngineOf<Dim>::press_plates(const StepFrame& frame) {
+  plate_sums_.assign(world_.walls.size(), WallSums());
+  for (int l = 0; l < strip_->num_lanes(); ++l) strip_->lane(l).press_plates(frame, plate_sums_);
+  plates_->begin(plate_sums_);
+}
+
+/// All ranks know the work of a plate; the first one counts it.
+template <int Dim>
+void Simulation::EngineOf<Dim>::kick_plates() {
+  const int appears_in = step_ == stage_begin_ ? stage_ : -1;
+  plate_sums_.assign(world_.walls.size(), WallSums());
+  plates_->kick(world_.walls, appears_in,
+                communicator_.is_root() ? strip_->lane(0).wall_sums() : plate_sums_);
 }
 
 template class Simulation::EngineOf<2>;

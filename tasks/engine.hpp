@@ -104,8 +104,11 @@ class Simulation::EngineOf final : public Simulation::Engine {
   void stop_if_wrong();
   void update_lists();
   void size_chunks();
+  void press_plates(const StepFrame& frame);
+  void kick_plates();
   void update_stage();
   void enter_stage(int stage);
+  void refuse_intruders(std::size_t wall);
   [[nodiscard]] bool stage_is_over();
   [[nodiscard]] CheckNumbers check_numbers();
   // engine_watch.cpp
@@ -133,7 +136,6 @@ class Simulation::EngineOf final : public Simulation::Engine {
   [[nodiscard]] std::string describe_fastest();
   [[nodiscard]] std::string describe_worst_overlap();
   [[nodiscard]] std::string from_rank_with_most(double mine, const std::string& text);
-  [[nodiscard]] std::vector<WallSums> wall_sums() const;
   [[nodiscard]] OwnedParticle particle(const ParticleStore<Dim>& store, std::int32_t i) const;
 
   World<Dim> world_;
@@ -143,6 +145,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   std::optional<SkinTuner> tuner_;  ///< of rank 0
   double next_skin_ = 0.0;          ///< that all ranks agreed on [m]
   std::unique_ptr<Plates> plates_;
+  std::vector<WallSums> plate_sums_;  ///< of this rank, in a step
   std::vector<Vec3> walls_at_rebuild_;
   std::int64_t stage_begin_ = 0;
   bool must_rebuild_ = false;

@@ -85,7 +85,6 @@ CheckpointState Simulation::EngineOf<Dim>::state() {
   s.left_contacts = left_.links.contacts;
   s.left_wall_contacts = left_.links.wall_contacts;
   s.left_bonds = left_.links.bonds;
-  s.plate_forces = plates_->forces();
   for (const WallState& wall : world_.walls) s.walls.push_back(saved(wall));
   s.fingerprint = fingerprint(model_);
   return s;
@@ -169,7 +168,6 @@ void Simulation::EngineOf<Dim>::restore(const OpenCheckpoint& checkpoint) {
   left_ = {s.left_particles, {s.left_contacts, s.left_wall_contacts, s.left_bonds}};
   schedule_->restore(step_, {s.look_step, s.look_outside, s.look_overlap},
                      communicator_.is_root() ? num_particles_ : 0);
-  plates_->restore(s.plate_forces, communicator_.is_root());
 }
 
 template class Simulation::EngineOf<2>;

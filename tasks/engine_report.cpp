@@ -76,11 +76,9 @@ typename Lane<Dim>::Partners Simulation::EngineOf<Dim>::partners_of(const Suspec
     if (!piece.empty()) std::memcpy(found.ids.data() + known, piece.data(), piece.size());
   }
   std::sort(found.ids.begin(), found.ids.end());
-  double to_wall[3] = {};
   for (std::size_t w = 0; w < world_.walls.size(); ++w) {
-    if (world_.walls[w].is_active &&
-        WallContacts<Dim>::nearest(world_.wall_specs[w], world_.walls[w], s.position, to_wall) <
-            s.radius)
+    const WallState& wall = world_.walls[w];
+    if (wall.is_active && world_.wall_shapes[w].foot(wall.point, s.position).distance < s.radius)
       found.walls.push_back(static_cast<std::int32_t>(w));
   }
   return found;

@@ -5,6 +5,7 @@
 
 #include <barchan/comm/strips.hpp>
 #include <barchan/core/error.hpp>
+#include <barchan/core/generators/check_walls.hpp>
 #include <barchan/core/generators/make_particles.hpp>
 #include <barchan/tasks/engine.hpp>
 #include <barchan/tasks/stability.hpp>
@@ -18,6 +19,7 @@ Simulation::EngineOf<Dim>::EngineOf(const Model& model, const ParticleSet& parti
                                     Communicator communicator, const RunOptions& options)
     : Engine(model, std::move(communicator), options) {
   check_particles(model_, particles);
+  check_walls(model_, particles);
   check_time_step(model_, step_limits(model_, particles));
   num_particles_ = static_cast<std::int64_t>(particles.particles.size());
   const double skin = model_.search.skin.value_or(default_skin(particles));

@@ -14,14 +14,7 @@ void set_up(World<Dim>& world, const Model& model, const WorldScale& scale, Vect
   world.grain = scale.grain;
   world.kernels = make_kernels(Dim, width, world.laws, scale.has_bonds, world.grid.box());
   world.bond_laws = model.bond_laws;
-  world.wall_specs = model.walls;
-  for (const WallSpec& spec : model.walls) {
-    WallState state;
-    state.point = spec.point;
-    state.velocity = spec.velocity;
-    state.is_active = spec.from_stage <= 0;
-    world.walls.push_back(state);
-  }
+  world.set_walls(model.walls);
 }
 
 template void set_up(World<2>&, const Model&, const WorldScale&, VectorWidth);

@@ -33,6 +33,7 @@ enum class CheckpointColumn : std::uint32_t {
   BondLaws = 38,
   BondLengths = 39,
   BondStates = 40,
+  WallContactImages = 41,
 };
 
 /// The name of a column as messages say it.
@@ -52,6 +53,7 @@ struct CheckpointShare {
   std::vector<double> contact_springs;    ///< from the first to the second [m]; 1 or 3 each
   std::vector<std::int64_t> wall_contact_ids;
   std::vector<std::int32_t> wall_contact_walls;
+  std::vector<std::int32_t> wall_contact_images;  ///< three each
   std::vector<double> wall_contact_springs;
   std::vector<std::int64_t> bond_ids;  ///< two each, the lower one first; intact bonds
   std::vector<std::int32_t> bond_laws;
@@ -82,6 +84,7 @@ void for_each_column(Share& share, Visit&& visit) {
   visit(C::ContactSprings, share.contact_springs);
   visit(C::WallContactIds, share.wall_contact_ids);
   visit(C::WallContactWalls, share.wall_contact_walls);
+  visit(C::WallContactImages, share.wall_contact_images);
   visit(C::WallContactSprings, share.wall_contact_springs);
   visit(C::BondIds, share.bond_ids);
   visit(C::BondLaws, share.bond_laws);

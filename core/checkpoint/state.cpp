@@ -37,11 +37,6 @@ CheckpointState take_state(ByteReader& in) {
   for (std::int64_t* count :
        {&s.left_particles, &s.left_contacts, &s.left_wall_contacts, &s.left_bonds})
     *count = in.take<std::int64_t>();
-  const auto num_forces = in.take<std::uint32_t>();
-  for (std::uint32_t f = 0; f < num_forces; ++f) {
-    const auto of_step = in.take<std::int64_t>();
-    s.plate_forces.push_back({of_step, in.take_counted<std::int64_t>()});
-  }
   s.walls = in.take_counted<SavedWall>();
   s.fingerprint = in.take_counted<std::uint64_t>();
   in.finish();
@@ -115,11 +110,6 @@ std::vector<std::byte> encode(const CheckpointState& s) {
   for (const std::int64_t count :
        {s.left_particles, s.left_contacts, s.left_wall_contacts, s.left_bonds})
     out.put(count);
-  out.put(static_cast<std::uint32_t>(s.plate_forces.size()));
-  for (const SavedPlateForces& f : s.plate_forces) {
-    out.put(f.of_step);
-    out.put_counted(f.digits);
-  }
   out.put_counted(s.walls);
   out.put_counted(s.fingerprint);
   return bytes;

@@ -18,12 +18,6 @@ struct SavedWall {
   double is_active;
 };
 
-/// Forces on loaded plates, summed over all ranks, that a step is still to use.
-struct SavedPlateForces {
-  std::int64_t of_step = -1;
-  std::vector<std::int64_t> digits;
-};
-
 /// What a checkpoint keeps beside particles, contacts and bonds; the same on all ranks.
 struct CheckpointState {
   std::int64_t step = 0, stage_begin = 0;
@@ -44,7 +38,6 @@ struct CheckpointState {
   // What left the domain since the start, and the links that went with it.
   std::int64_t left_particles = 0, left_contacts = 0, left_wall_contacts = 0, left_bonds = 0;
 
-  std::vector<SavedPlateForces> plate_forces;
   std::vector<SavedWall> walls;
   std::vector<std::uint64_t> fingerprint;  ///< of the model, see below
 };

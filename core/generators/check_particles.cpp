@@ -19,6 +19,9 @@ void check_each(const Model& model, const ParticleData& p) {
   const auto refuse = [&](const std::string& what, const char* remedy) {
     throw InputError(at(p) + " " + what, remedy);
   };
+  const bool moves = !p.velocity.isZero(0.0) || !p.omega.isZero(0.0);
+  if (p.fixed && moves)
+    refuse("is fixed and has a velocity", "leave velocity and omega out: fixed particles stay");
   if (p.id < 1) refuse("has no valid id", "ids count from 1");
   if (!(p.position.allFinite() && p.velocity.allFinite() && p.omega.allFinite())) {
     refuse("has a position or velocity that is not finite", "give finite numbers");

@@ -16,6 +16,8 @@
 namespace barchan {
 namespace {
 
+constexpr const char* kStays =
+    "leave velocity and omega out, or fix the box of those that stay";
 constexpr double kTouchGap = 1e-6;  ///< over the sum of the radii
 
 std::vector<Grain> make_ring(const RingSource& ring) {
@@ -46,6 +48,10 @@ void wrap(Vec3& position, const Domain& domain, int dimension) {
     if (x < lo && x >= lo - (hi - lo)) x += hi - lo;
     if (x >= hi && x < hi + (hi - lo)) x = std::max(lo, x - (hi - lo));
   }
+}
+
+bool moves(const ParticleData& particle) {
+  return !particle.velocity.isZero(0.0) || !particle.omega.isZero(0.0);
 }
 
 /// Appends source after source; holds the set under construction.
@@ -135,6 +141,7 @@ class Maker {
     }
     particle.velocity += source.velocity;
     particle.omega += source.omega;
+    if (is_contradictory(particle, source)) refuse("is fixed and has a velocity", kStays);
     set_.particles.push_back(particle);
   }
 
@@ -155,10 +162,26 @@ class Maker {
     }
   }
 
+  [[nodiscard]] bool is_fixed(const ParticleData& particle, const ParticleSource& source) const {
+    return source.fixed && box_contains(*source.fixed, particle.position, model_.dimension);
+  }
+
+  /// Who fixes all of a source, or lists a particle in the fixed box, cannot mean a velocity. In
+  /// the box of any other source it is for those outside, or of a state that is to be frozen.
+  [[nodiscard]] bool is_contradictory(const ParticleData& particle,
+                                      const ParticleSource& source) const {
+    if (!is_fixed(particle, source) || !moves(particle)) return false;
+    return std::isinf(source.fixed->lo.x()) || std::holds_alternative<ListSource>(source.kind);
+  }
+
   void finish_particle(ParticleData& particle, const ParticleSource& source) const {
     wrap(particle.position, model_.domain, model_.dimension);
-    if (source.fixed && box_contains(*source.fixed, particle.position, model_.dimension))
-      particle.fixed = true;
+    particle.fixed = is_fixed(particle, source);
+    if (is_contradictory(particle, source)) {
+      throw InputError(source.place,
+                       fmt::format("particle {} is fixed and has a velocity", particle.id), kStays);
+    }
+    if (particle.fixed) particle.velocity = particle.omega = Vec3::Zero();
     if (is_inside(model_.domain, particle.position, model_.dimension)) return;
     throw InputError(
         source.place,

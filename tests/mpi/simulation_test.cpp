@@ -222,6 +222,10 @@ TEST(SameBits, MovingWalls) {
   (void)expect_same_bits(moving_walls(), 12);
 }
 
+TEST(SameBits, PlatesThatGoThroughPeriodicBorders) {
+  (void)expect_same_bits(plates_at_borders(), 20);
+}
+
 TEST(SameBits, FreeParticlesOnFixedOnesWithMassDependentDamping) {
   (void)expect_same_bits(rough_bed(), 13);
 }

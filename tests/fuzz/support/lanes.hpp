@@ -140,10 +140,7 @@ class Sample {
     plate.point = Vec3(3.0, 2.0, 1.0);
     plate.width = plate.depth = 1.0;
     plate.velocity = Vec3(0.0, -0.1, 0.0);
-    w.wall_specs = {floor, plate};
-    w.walls.resize(2);
-    w.walls[1].point = plate.point;
-    w.walls[1].velocity = plate.velocity;
+    w.set_walls(std::array{floor, plate});
     return w;
   }
 

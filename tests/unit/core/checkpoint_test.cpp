@@ -52,6 +52,7 @@ CheckpointShare some_share(int num_particles, std::int64_t first_id) {
   }
   s.wall_contact_ids = {first_id};
   s.wall_contact_walls = {1};
+  s.wall_contact_images = {-1, 0, 2};
   s.wall_contact_springs = {-0.0};
   s.bond_ids = {first_id, first_id + 1};
   s.bond_laws = {0};
@@ -70,7 +71,6 @@ CheckpointState some_state() {
   s.grain = 0x1p-40;
   s.look_step = 496;
   s.look_outside = 7;
-  s.plate_forces = {{499, {1, 2, 3}}, {498, {}}};
   s.walls.resize(2);
   s.walls[1].point[1] = 0.75;
   s.fingerprint = {1, 2, 3};
@@ -143,6 +143,7 @@ TEST(Checkpoint, BringsBackWhatWasPutIn) {
   EXPECT_EQ(shares[1].ids, expected.ids);
   EXPECT_EQ(shares[1].velocities, expected.velocities);
   EXPECT_EQ(shares[1].totals, expected.totals);
+  EXPECT_EQ(shares[1].wall_contact_images, (std::vector<std::int32_t>{-1, 0, 2}));
   EXPECT_TRUE(std::signbit(shares[1].wall_contact_springs[0]))
       << "the sign of a zero is part of the state";
 }
@@ -154,7 +155,6 @@ TEST(Checkpoint, BringsBackTheState) {
 
   EXPECT_EQ(encode(state), encode(expected));
   EXPECT_EQ(state.look_outside, 7);
-  EXPECT_EQ(state.plate_forces[0].digits, expected.plate_forces[0].digits);
   EXPECT_EQ(state.walls[1].point[1], 0.75);
 }
 
@@ -257,6 +257,8 @@ TEST(Checkpoint, RefusesColumnsThatDoNotFitEachOther) {
   refuses([](CheckpointShare& s) { s.contact_ids.pop_back(); });
   refuses([](CheckpointShare& s) { s.contact_springs.pop_back(); });
   refuses([](CheckpointShare& s) { s.wall_contact_walls[0] = -1; });
+  refuses([](CheckpointShare& s) { s.wall_contact_images.pop_back(); });
+  refuses([](CheckpointShare& s) { s.wall_contact_images[0] = 1 << 30; });
   refuses([](CheckpointShare& s) { s.bond_laws[0] = 1; });
   refuses([](CheckpointShare& s) { s.bond_states.pop_back(); });
   refuses([](CheckpointShare& s) { s.externals = {1.0}; });

@@ -264,5 +264,30 @@ TEST(CheckParticles, RefusesGrossOverlapsUnlessBondedOrFixed) {
   EXPECT_NO_THROW(check_particles(model, pair));
 }
 
+TEST(CheckParticles, RefusesAVelocityOfWhatIsFixed) {
+  constexpr double kEndless = std::numeric_limits<double>::infinity();
+  ParticleSource source = lattice(Arrangement::Square, {1, 1, 0}, {3, 3, 0});
+  source.fixed = Box{Vec3::Constant(-kEndless), Vec3::Constant(kEndless)};
+  EXPECT_NO_THROW((void)make_particles(model_of(2), std::vector{source}));
+  source.velocity = Vec3(0, 1, 0);
+  EXPECT_NE(message_of([&] {
+              (void)make_particles(model_of(2), std::vector{source});
+            }).find("particle 1 is fixed and has a velocity"),
+            std::string::npos);
+  source.velocity = Vec3::Zero();
+  source.omega = Vec3(0, 0, 1);
+  EXPECT_THROW((void)make_particles(model_of(2), std::vector{source}), InputError);
+
+  source.fixed = Box{{1, 1, 0}, {3, 2, 0}};  // the lower half: the upper one spins
+  const ParticleSet half = make_particles(model_of(2), std::vector{source});
+  for (const ParticleData& p : half.particles) EXPECT_EQ(p.omega.z(), p.fixed ? 0.0 : 1.0);
+  EXPECT_TRUE(half.particles.front().fixed);
+  EXPECT_FALSE(half.particles.back().fixed);
+
+  ParticleSet one;
+  one.particles = {{1, 0, 0.1, 1, {5, 5, 0}, Vec3::Zero(), {0, 0, 2}, true}};
+  EXPECT_THROW(check_particles(model_of(2), one), InputError);
+}
+
 }  // namespace
 }  // namespace barchan

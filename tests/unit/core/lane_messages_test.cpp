@@ -32,7 +32,7 @@ Migration<2> a_migration(const World<2>& world) {
   p.type = 1;
   m.particles = {p};
   m.contacts = {{0, 9, {0.25}}};
-  m.walls = {{0, 0, {0.5}}};
+  m.walls = {{0, 0, {-1, 0, 0}, {0.5}}};
   m.bonds = {{{7, 9, 0, 0.1, {}}, 1}};
   return m;
 }
@@ -47,6 +47,7 @@ TEST(LaneMessages, BringArrivalsAcrossWithHistoryAndBonds) {
   EXPECT_EQ(came.particles.at(0).id, 7);
   EXPECT_EQ(came.contacts.at(0).spring[0], 0.25);
   EXPECT_EQ(came.walls.at(0).spring[0], 0.5);
+  EXPECT_EQ(came.walls.at(0).image, (WallImage{-1, 0, 0}));
   EXPECT_EQ(came.bonds.at(0).bond.id_b, 9);
 }
 
@@ -68,6 +69,7 @@ TEST(LaneMessages, RefuseWhatWouldLeaveAnArray) {
   refuses([](Migration<2>& m) { m.contacts[0].handle = -1; });
   refuses([](Migration<2>& m) { m.walls[0].number = 1; });
   refuses([](Migration<2>& m) { m.walls[0].wall = 1; });
+  refuses([](Migration<2>& m) { m.walls[0].image[1] = 1 << 30; });
   refuses([](Migration<2>& m) { m.bonds[0].bond.law = 1; });
   refuses([](Migration<2>& m) { m.bonds[0].bond.id_b = 7; });
 }
