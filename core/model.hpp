@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <barchan/core/source_record.hpp>
 #include <barchan/core/vec.hpp>
 
 // What a deck says, checked and in SI, free of the dimension (2D leaves z at zero).
@@ -180,6 +181,7 @@ struct Model {
   LimitSpec limits;
   OutputSpec output;
   CheckpointSpec checkpoint;
+  std::vector<SourceRecord> sources;  ///< what a restart holds its particles against; may be empty
 };
 
 }  // namespace barchan
