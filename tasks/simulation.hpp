@@ -96,7 +96,8 @@ class Simulation {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  /// Advances by at most `num_steps`; fewer when a stop was requested. @return steps done
+  /// Advances by at most `num_steps`; fewer when a stop was requested or the last stage ends.
+  /// @return steps done
   /// Errors: AgreedError, the same on every rank and between two steps: a particle left the domain
   /// and must not, overlaps beyond the limit, a particle or wall outran the skin, particles,
   /// contacts or bonds got lost. RunError on one rank only: a particle that in one step moves
@@ -108,8 +109,9 @@ class Simulation {
   /// Ends the run() of this process that is under way, or else its next one, on all ranks and
   /// within a few steps; then the request is forgotten. Callable from a signal handler.
   static void request_stop() noexcept;
-  [[nodiscard]] bool stopped()
-      const;  ///< all ranks agreed to stop the last run(); the next goes on
+  /// All ranks agreed to stop the last run(), after which the next goes on; or is_over().
+  [[nodiscard]] bool stopped() const;
+  [[nodiscard]] bool is_over() const;  ///< the last stage has ended, and with it the run
 
   [[nodiscard]] std::int64_t step() const;
   [[nodiscard]] double time() const;  ///< [s]
