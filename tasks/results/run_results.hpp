@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,9 +34,9 @@ struct ResultsSpec {
 /// the folder cannot be made; RunError when a file cannot be written.
 class RunResults {
  public:
-  /// Clears and starts the folder, with the state as it is: RunFolder::check is the caller's. When
-  /// it continues, all that is of later steps goes, so that what follows is as if never
-  /// interrupted.
+  /// Clears and starts the folder, with the state as it is: a FolderClaim, or RunFolder::check, is
+  /// the caller's. When it continues, all that is of later steps goes, so that what follows is as
+  /// if never interrupted.
   /// @param simulation  lives longer
   RunResults(Simulation& simulation, RunFolder folder, const ParticleSet& particles,
              ResultsSpec spec);
@@ -50,6 +51,7 @@ class RunResults {
   RunSummary finish(bool interrupted = false);
 
  private:
+  void on_rank_zero(const std::function<void()>& work);
   void list_departures();
 
   Simulation& simulation_;
