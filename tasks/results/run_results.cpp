@@ -40,6 +40,7 @@ RunResults::RunResults(Simulation& simulation, RunFolder folder, const ParticleS
   });
   const bool continues = spec_.continues;
   log_.emplace(simulation, folder_.file("log.txt"), continues);
+  for (const std::string& note : particles.notes) log_->warn(note);
   list_departures();
   series_.emplace(simulation, folder_.file("series.csv"), spec_.rings, continues);
   if (continues) {
