@@ -9,6 +9,7 @@
 #include <barchan/app/commands.hpp>
 #include <barchan/app/loaded_deck.hpp>
 #include <barchan/app/readable.hpp>
+#include <barchan/app/warning.hpp>
 #include <barchan/core/force_grain.hpp>
 #include <barchan/core/generators/check_walls.hpp>
 #include <barchan/tasks/memory_estimate.hpp>
@@ -174,6 +175,7 @@ void check_deck(const CheckArguments& arguments) {
   const LoadedDeck loaded = load_deck(arguments.deck, arguments.settings);
   const Model& model = loaded.deck.model;
   const auto limits = step_limits(model, loaded.particles);
+  for (const std::string& note : loaded.particles.notes) print_warning(note);
   std::printf("%s%s%s\n", arguments.deck.c_str(), model.title.empty() ? "" : ": ",
               model.title.c_str());
   print_particles(loaded);

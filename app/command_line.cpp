@@ -163,9 +163,11 @@ void add_others(CLI::App& root, CommandLine& line) {
       ->required()
       ->type_name("PATH");
 
-  CLI::App& convert =
-      *root.add_subcommand("convert", "Convert particles: .csv, LAMMPS data (.data, .lmp), .vtp");
-  convert.add_option("in", line.convert.in, "File to read; also a .pvtp of all ranks")
+  CLI::App& convert = *root.add_subcommand(
+      "convert", "Convert particles and bonds: .csv, LAMMPS data (.data, .lmp), .vtp");
+  convert
+      .add_option("in", line.convert.in,
+                  "File to read; also a .pvtp of all ranks, or packed as .gz")
       ->required()
       ->type_name("IN");
   convert.add_option("out", line.convert.out, "File to write; its ending selects the format")
@@ -176,6 +178,11 @@ void add_others(CLI::App& root, CommandLine& line) {
                   "2 or 3; default: 2 where all particles lie in the plane z = 0")
       ->type_name("D")
       ->check(CLI::IsMember({2, 3}));
+  convert
+      .add_option("--data-density", line.convert.density,
+                  "What densities of LAMMPS data mean in 2D: of a 'sphere' of that mass, as LAMMPS "
+                  "takes them (default), or of the 'disk'")
+      ->check(one_of({"sphere", "disk"}));
   convert.add_flag("--force", line.convert.force, "Replace a file that exists");
 }
 

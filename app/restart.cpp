@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include <barchan/app/verdict.hpp>
+#include <barchan/app/warning.hpp>
 #include <barchan/core/error.hpp>
 
 namespace fs = std::filesystem;
@@ -59,8 +60,7 @@ void print_warnings(Simulation& simulation, RunResults& results, Progress& progr
   for (const std::string& warning : warnings) results.log().add("warning: " + warning);
   for (std::string& warning : results.log().take_warnings()) warnings.push_back(std::move(warning));
   if (!warnings.empty()) progress.clear();
-  for (const std::string& warning : warnings)
-    std::fprintf(stderr, "barchan: warning: %s\n", warning.c_str());
+  for (const std::string& warning : warnings) print_warning(warning);
 }
 
 }  // namespace barchan::app

@@ -27,6 +27,12 @@ struct Bond {
   std::array<double, kState> state{};
 };
 
+/// A bond of a particle set, and back. @param at_start  its length where the data leave it open [m]
+template <int Dim>
+[[nodiscard]] Bond<Dim> bond_of(const BondData& data, double at_start);
+template <int Dim>
+[[nodiscard]] BondData data_of(const Bond<Dim>& bond);
+
 /// The bonds of one lane: every bond with an owned end. A bond across a cut lives on both sides and
 /// stays equal there.
 ///

@@ -135,6 +135,8 @@ class Lane {
   /// travel() tells when that was too far. @param share  see outrun_share. After a rebuild.
   void note_outrun(double share) { outrun_ = std::max(outrun_, share); }
   [[nodiscard]] std::uint64_t digest() const;
+  /// Is the bond whole, and is this the one lane of two that counts it?
+  [[nodiscard]] bool counts_bond(std::int32_t bond) const;
 
   // ---- what others see
   Store& store() { return store_; }
@@ -193,7 +195,6 @@ class Lane {
     return !removed_.empty() && std::binary_search(removed_.begin(), removed_.end(),
                                                    store_.id[static_cast<std::size_t>(row)]);
   }
-  [[nodiscard]] bool counts_bond(std::int32_t bond) const;
   /// Whether to lose one of these now.
   bool loses(Loss what) { return loss_ == what && std::exchange(loss_, Loss::Nothing) == what; }
   [[nodiscard]] bool computes_bond(std::int32_t bond) const;

@@ -38,14 +38,8 @@ void Lane<Dim>::seed(int slab_begin, int slab_end, std::span<const ParticleData>
     store_.flags[at] = static_cast<std::uint8_t>((p.fixed ? Store::kFixed : 0) |
                                                  (is_bonded[at] != 0 ? Store::kBonded : 0));
   }
-  for (std::size_t b = 0; b < bonds.size(); ++b) {
-    Bond<Dim> bond;
-    bond.id_a = std::min(bonds[b].id_a, bonds[b].id_b);
-    bond.id_b = std::max(bonds[b].id_a, bonds[b].id_b);
-    bond.law = bonds[b].law;
-    bond.length = bond_lengths[b];
-    bonds_.add(bond);
-  }
+  for (std::size_t b = 0; b < bonds.size(); ++b)
+    bonds_.add(bond_of<Dim>(bonds[b], bond_lengths[b]));
 }
 
 template void Lane<2>::seed(int, int, std::span<const ParticleData>, std::span<const BondData>,

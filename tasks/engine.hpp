@@ -23,6 +23,7 @@ class Simulation::Engine {
   virtual ~Engine() = default;
   virtual std::int64_t run(std::int64_t num_steps) = 0;
   virtual void for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const = 0;
+  virtual void for_each_bond(const BondVisitor& visit) = 0;
   virtual void apply_forces(const std::function<Vec3(const OwnedParticle&)>& force) = 0;
   virtual void clear_forces() = 0;
   virtual Measures measure() = 0;
@@ -75,6 +76,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   ~EngineOf() override;
   std::int64_t run(std::int64_t num_steps) override;
   void for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const override;
+  void for_each_bond(const BondVisitor& visit) override;
   void apply_forces(const std::function<Vec3(const OwnedParticle&)>& force) override;
   void clear_forces() override;
   Measures measure() override;

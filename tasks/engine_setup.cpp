@@ -23,7 +23,7 @@ Simulation::EngineOf<Dim>::EngineOf(const Model& model, const ParticleSet& parti
   check_time_step(model_, step_limits(model_, particles));
   num_particles_ = static_cast<std::int64_t>(particles.particles.size());
   const double skin = model_.search.skin.value_or(default_skin(particles));
-  make_world({skin, search_reach(particles, skin), num_particles_, !particles.bonds.empty(),
+  make_world({skin, search_reach(model_, particles, skin), num_particles_, !particles.bonds.empty(),
               barchan::force_grain(model_, particles)});
   make_strip();
   strip_->seed(particles);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <barchan/tasks/engine.hpp>
@@ -30,6 +31,27 @@ void Simulation::EngineOf<Dim>::for_each_owned(
   for (int l = 0; l < strip_->num_lanes(); ++l) {
     const auto& store = strip_->lane(l).store();
     for (std::int32_t i = 0; i < store.num_owned; ++i) visit(particle(store, i));
+  }
+}
+
+template <int Dim>
+void Simulation::EngineOf<Dim>::for_each_bond(const BondVisitor& visit) {
+  strip_->complete_halo();
+  const PeriodicBox& box = world_.grid.box();
+  for (int l = 0; l < strip_->num_lanes(); ++l) {
+    const Lane<Dim>& lane = strip_->lane(l);
+    const BondSet<Dim>& bonds = lane.bonds();
+    for (std::int32_t i = 0; i < static_cast<std::int32_t>(bonds.bonds().size()); ++i) {
+      if (!lane.counts_bond(i)) continue;
+      const double *a = lane.store().x(bonds.end_a(i)), *b = lane.store().x(bonds.end_b(i));
+      Vec3 first = Vec3::Zero(), second = Vec3::Zero();
+      for (int c = 0; c < Dim; ++c) {
+        const double d = b[c] - a[c];
+        first[c] = a[c];
+        second[c] = a[c] + (d - box.length[c] * std::rint(d * box.inverse[c]));
+      }
+      visit(data_of(bonds.bonds()[static_cast<std::size_t>(i)]), first, second);
+    }
   }
 }
 

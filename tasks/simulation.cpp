@@ -133,6 +133,9 @@ const Communicator& Simulation::communicator() const {
 void Simulation::for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const {
   engine().for_each_owned(visit);
 }
+void Simulation::for_each_bond(const BondVisitor& visit) {
+  between_steps("for_each_bond").for_each_bond(visit);
+}
 std::int64_t Simulation::num_owned() const {
   return engine().num_owned();
 }

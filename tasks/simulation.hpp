@@ -28,6 +28,8 @@ struct OwnedParticle {
   Vec3 position, velocity, omega;
 };
 
+using BondVisitor = std::function<void(const BondData&, const Vec3& a, const Vec3& b)>;
+
 /// Times of one kind of communication on this rank [s].
 struct CommunicationTime {
   double in_flight = 0.0;  ///< messages were under way
@@ -123,6 +125,9 @@ class Simulation {
 
   /// Calls `visit` for every particle that this rank owns, in any order.
   void for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const;
+  /// Calls `visit` for every whole bond, on one rank each, with the positions of its ends; that of
+  /// b by the image nearest to a. Collective.
+  void for_each_bond(const BondVisitor& visit);
   [[nodiscard]] std::int64_t num_owned() const;
   [[nodiscard]] std::int64_t num_particles() const;     ///< on all ranks, now
   [[nodiscard]] const LeftDomain& left_domain() const;  ///< on all ranks; local

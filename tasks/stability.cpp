@@ -145,13 +145,15 @@ Vec3 between(const Domain& domain, const Vec3& a, const Vec3& b) {
   return d;
 }
 
-void add_bond(const Model& model, const BondLaw& law, const ParticleData& a, const ParticleData& b,
-              Bonded& of_a, Bonded& of_b) {
+void add_bond(const Model& model, const BondData& bond, const ParticleData& a,
+              const ParticleData& b, Bonded& of_a, Bonded& of_b) {
+  const BondLaw& law = model.bond_laws[static_cast<std::size_t>(bond.law)];
   const Vec3 d = between(model.domain, a.position, b.position);
   const double length = d.norm();
   const double inverse = 1.0 / mass_of(a, model.dimension) + 1.0 / mass_of(b, model.dimension);
   if (!(length > 0.0) || !(inverse > 0.0)) return;
-  const BondSection s = section_of(model, law, length, a.radius, b.radius);
+  const double unstressed = bond.length > 0.0 ? bond.length : length;
+  const BondSection s = section_of(model, law, unstressed, a.radius, b.radius);
   const double gain = spin_gain(model.dimension);
   const double turning = gain * (1.0 / (mass_of(a, model.dimension) * a.radius * a.radius) +
                                  1.0 / (mass_of(b, model.dimension) * b.radius * b.radius));
@@ -188,8 +190,7 @@ void add_bonds(const Model& model, const ParticleSet& set, Limits& limits) {
   std::map<std::size_t, Bonded> bonded;
   for (const BondData& bond : set.bonds) {
     const std::size_t a = find(bond.id_a), b = find(bond.id_b);
-    add_bond(model, model.bond_laws[static_cast<std::size_t>(bond.law)], set.particles[a],
-             set.particles[b], bonded[a], bonded[b]);
+    add_bond(model, bond, set.particles[a], set.particles[b], bonded[a], bonded[b]);
   }
   const auto add = [&](const Bonded& p, const std::string& law) {
     limits.add("bond " + law + ", stretching",

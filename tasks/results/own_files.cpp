@@ -164,9 +164,12 @@ void remove_files(const OwnFiles& own) {
   for (const fs::path& path : own.folders) fs::remove(path);
 }
 
-std::optional<std::int64_t> snapshot_step(const std::string& name) {
+std::optional<std::int64_t> snapshot_step(const std::string& file) {
   std::int64_t step = -1;
-  if (!name.starts_with("step_")) return std::nullopt;
+  if (!file.starts_with("step_")) return std::nullopt;
+  std::string name = file;
+  constexpr std::string_view bonds = "_bonds";
+  if (const auto at = name.rfind(bonds); at != std::string::npos) name.erase(at, bonds.size());
   const char* end = name.data() + name.size();
   const auto number = std::from_chars(name.data() + 5, end, step);
   if (number.ec != std::errc{} || step < 0) return std::nullopt;

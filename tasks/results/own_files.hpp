@@ -24,7 +24,7 @@ struct OwnFiles {
 void remove_files(const OwnFiles& own);
 
 /// The step in the name of a snapshot, `step_000000500.pvtp`, or of a rank's piece of one,
-/// `step_000000500_rank_0.vtp`.
-[[nodiscard]] std::optional<std::int64_t> snapshot_step(const std::string& name);
+/// `step_000000500_rank_0.vtp`, or in that of the bonds beside either (bonds_path).
+[[nodiscard]] std::optional<std::int64_t> snapshot_step(const std::string& file);
 
 }  // namespace barchan

@@ -41,6 +41,7 @@ RunResults::RunResults(Simulation& simulation, RunFolder folder, const ParticleS
   list_departures();
   if (continues) on_rank_zero([&] { folder_.reopen(); });
   log_.emplace(simulation, folder_.file("log.txt"), continues);
+  for (const std::string& note : particles.notes) log_->warn(note);
   if (continues) {
     if (const auto damage = series_->damage(simulation, series_every_); !damage.empty())
       log_->warn(damage);

@@ -234,6 +234,32 @@ inline Scenario breaking_plate(int dimension) {
   return s;
 }
 
+/// Bonds across gaps, longer or shorter than their lengths and sheared from the start, as a file
+/// may have them.
+inline Scenario stressed_net(int dimension) {
+  Scenario s{"a net of stressed bonds, " + std::to_string(dimension) + "D",
+             plain_model(dimension, 4.0, 1.0),
+             {},
+             100,
+             {},
+             true};
+  s.model.bond_laws = {weak_bond(std::numeric_limits<double>::infinity())};
+  s.model.domain.periodic[0] = true;
+  add_cloud(s.set, dimension, {{0.1, 0.1, 0.1}, {3.9, 0.9, 0.9}, 0.2, 0.06, 0.5, 27});
+  bond_near(s.set, 0, s.set.particles.size(), 1.95);
+  for (std::size_t b = 0; b < s.set.bonds.size(); ++b) {
+    BondData& bond = s.set.bonds[b];
+    const auto part = static_cast<double>(b % 7);
+    bond.length = 0.19 + 0.003 * part;
+    bond.shear = Vec3(0.1 * part, 0.0, 0.0);
+    bond.bending = Vec3(0.0, 0.0, 0.002 * part);
+    if (dimension == 3) bond.twisting = 0.001 * part;
+  }
+  for (ParticleData& p : s.set.particles) p.velocity[0] += 4.0;
+  shuffle_ids(s.set, 10);
+  return s;
+}
+
 /// @param num_materials  5 materials make 15 laws and the null law, more than a vector register
 /// holds
 inline Scenario many_laws(int num_materials, bool no_tension) {

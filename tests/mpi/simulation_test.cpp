@@ -242,6 +242,11 @@ TEST(SameBits, BondsBreakingAtCutsIn3DAroundThePeriodicEnd) {
   EXPECT_GT(expect_same_bits(breaking_plate(3), 16).broken, 10);
 }
 
+TEST(SameBits, BondsAcrossGapsThatAreStressedAtTheStart) {
+  (void)expect_same_bits(stressed_net(2), 17);
+  (void)expect_same_bits(stressed_net(3), 18);
+}
+
 TEST(SameBits, MoreLawsThanAVectorHolds) {
   (void)expect_same_bits(many_laws(5, true), 17);
 }

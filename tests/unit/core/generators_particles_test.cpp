@@ -61,7 +61,7 @@ class ParticlesFromFile : public ::testing::Test {
     file.write("id,type,radius,density,x,y,z,vx\n" + rows);
     file.commit();
     ParticleSource source;
-    source.kind = FileSource{path_, FileSource::Format::Csv};
+    source.kind = FileSource{path_};
     return source;
   }
 
@@ -111,7 +111,6 @@ TEST(Lattice, JittersWithinTheGapOnly) {
   auto& kind = std::get<LatticeSource>(source.kind);
   kind.sizes.classes = {{0.1, 0.2, 1.0}};
   kind.jitter = 1.0;
-  source.bond = 0;
 
   const ParticleSet set = make_particles(model_of(2), std::vector{source});
 
