@@ -117,7 +117,8 @@ TEST_P(Strength, LeavesAnOrdinaryContactBehind) {
   EXPECT_NEAR(overlap, upper.mass * 9.81 / 1e5, 1e-3 * overlap);
 }
 
-/// Two bonded spheres turn against each other about the line between them. @return whether they break
+/// Two bonded spheres turn against each other about the line between them.
+/// @return whether they break
 bool breaks_twisted(double spin) {
   auto simulation = test::simulate(fmt::format(R"(
 dimension = 3
