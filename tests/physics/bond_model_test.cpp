@@ -166,7 +166,7 @@ Body body_of(const ParticleData& p, int dimension) {
   return {r, factor * mass, factor * inertia, p.position, p.velocity, p.omega};
 }
 
-Simulation bonded(int dimension, double dt, ParticleSet set) {
+Simulation bonded(int dimension, double dt, double damping, ParticleSet set) {
   const std::string z = dimension == 2 ? "" : ", 1.0";
   const Deck deck = parse_deck(
       fmt::format(R"(
@@ -193,7 +193,7 @@ material = "m"
 particle = [{{ position = {9}, radius = 0.1 }}]
 )",
                   dimension, dimension == 2 ? "" : ", -1.0", z, dt, kDensity, kYoung, kRatio,
-                  kFactor, kDamping, dimension == 2 ? "[0.0, 0.0]" : "[0.0, 0.0, 0.0]"),
+                  kFactor, damping, dimension == 2 ? "[0.0, 0.0]" : "[0.0, 0.0, 0.0]"),
       "test.toml");
   RunOptions options;
   options.threads = 1;
@@ -209,7 +209,7 @@ TEST_P(BondedChain, MovesAsAnIndependentModelOfBeams) {
   std::vector<Body> bodies;
   for (const ParticleData& p : chain) bodies.push_back(body_of(p, dimension));
   BeamModel model(dimension, bodies, {{0, 1}, {1, 2}, {2, 3}});
-  auto simulation = bonded(dimension, dt, {chain, {{1, 2, 0}, {2, 3, 0}, {3, 4, 0}}});
+  auto simulation = bonded(dimension, dt, kDamping, {chain, {{1, 2, 0}, {2, 3, 0}, {3, 4, 0}}});
 
   for (int step = 0; step < 3000; ++step) model.step(dt);
   simulation.run(3000);
@@ -222,6 +222,22 @@ TEST_P(BondedChain, MovesAsAnIndependentModelOfBeams) {
     EXPECT_LT((got.omega - want.omega).norm(), 1e-9 * 5.0) << k;
   }
   EXPECT_GT((test::particle(simulation, 1).position - chain[0].position).norm(), 1e-3);
+}
+
+TEST_P(BondedChain, KeepsItsEnergyWhereNothingDamps) {
+  auto simulation =
+      bonded(GetParam(), 2e-5, 0.0, {chain_of(GetParam()), {{1, 2, 0}, {2, 3, 0}, {3, 4, 0}}});
+  simulation.run(10);
+  const double energy = test::total_energy(simulation);
+  double elastic = 0.0;
+
+  for (int sample = 0; sample < 30; ++sample) {
+    simulation.run(37);
+    elastic = std::max(elastic, simulation.measure().elastic.value());
+
+    EXPECT_NEAR(test::total_energy(simulation), energy, 2e-3 * energy) << sample;
+  }
+  EXPECT_GT(elastic, 0.3 * energy);
 }
 
 INSTANTIATE_TEST_SUITE_P(Dimension, BondedChain, testing::Values(2, 3),

@@ -117,6 +117,49 @@ TEST_P(Strength, LeavesAnOrdinaryContactBehind) {
   EXPECT_NEAR(overlap, upper.mass * 9.81 / 1e5, 1e-3 * overlap);
 }
 
+/// Two bonded spheres turn against each other about the line between them.
+/// @return whether they break
+bool breaks_twisted(double spin) {
+  auto simulation = test::simulate(fmt::format(R"(
+dimension = 3
+[domain]
+lo = [-1.0, -1.0, -1.0]
+hi = [1.0, 1.0, 1.0]
+[time]
+step = 2e-6
+steps = 1000000
+[[material]]
+name = "rock"
+density = 1000.0
+normal_stiffness = 1e5
+[[bond]]
+name = "glue"
+young_modulus = 1e8
+shear_strength = 1e4
+[[particles]]
+kind = "list"
+material = "rock"
+bond = "glue"
+particle = [
+  {{ position = [0.0, 0.0, 0.0], omega = [0.0, 0.0, {}], radius = 0.05 }},
+  {{ position = [0.0, 0.0, 0.1], omega = [0.0, 0.0, {}], radius = 0.05 }},
+])",
+                                               spin, -spin));
+  simulation.run(1000);
+  return simulation.measure().broken_bonds > 0;
+}
+
+TEST(TwistStrength, CountsTwistInShear) {
+  // Undamped, the moment swings up to 2·spin·sqrt(k·I/2), k = E/(2.5·L)·J, and the stress is M·R/J.
+  const double polar = 0.5 * std::numbers::pi * std::pow(kRadius, 4);
+  const double k = 1e8 / (2.5 * 2.0 * kRadius) * polar;
+  const double inertia = 0.4 * 1000.0 * 4.0 / 3.0 * std::numbers::pi * std::pow(kRadius, 5);
+  const double spin = 1e4 * polar / kRadius / (2.0 * std::sqrt(0.5 * k * inertia));
+
+  EXPECT_FALSE(breaks_twisted(0.995 * spin));
+  EXPECT_TRUE(breaks_twisted(1.005 * spin));
+}
+
 INSTANTIATE_TEST_SUITE_P(Dimensions, Strength, testing::Values(2, 3),
                          [](const auto& given) { return fmt::format("In{}D", given.param); });
 
