@@ -13,6 +13,7 @@
 #include <barchan/core/law_table.hpp>
 #include <barchan/core/model.hpp>
 #include <barchan/core/particle_store.hpp>
+#include <barchan/core/rows.hpp>
 #include <barchan/core/simd/scalar.hpp>
 #include <barchan/core/wall_shape.hpp>
 
