@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <barchan/core/deck/readers.hpp>
-#include <barchan/core/generators/check_walls.hpp>
 
 namespace barchan::deck {
 
@@ -84,9 +83,6 @@ WallSpec read_wall(const TableReader& table, const DeckDraft& draft) {
   } else {
     refuse_on(table, {"width", "depth", "load", "mass", "damping"}, "a plane",
               "remove it, or write kind = \"plate\"");
-    const Model& model = draft.deck.model;
-    if (const auto across = plane_across_period(wall, model.domain, model.dimension))
-      table.fail("normal", across->what, across->remedy);
   }
   return wall;
 }

@@ -1,7 +1,5 @@
 #include <barchan/core/generators/check_walls.hpp>
 
-#include <cmath>
-
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -12,9 +10,6 @@
 
 namespace barchan {
 namespace {
-
-/// Of a unit normal: what rounding leaves where it should be zero.
-constexpr double kParallel = 1e-12;
 
 constexpr const char* kRemedy = "move the particle or the wall: at most half a radius may overlap";
 
@@ -44,25 +39,6 @@ SourcePlace place_of(const Model& model, const WallSpec& wall) {
 
 }  // namespace
 
-std::optional<PlaneAcrossPeriod> plane_across_period(const WallSpec& wall, const Domain& domain,
-                                                     int dimension) {
-  if (wall.kind != WallKind::Plane) return std::nullopt;
-  for (int axis = 0; axis < dimension; ++axis) {
-    if (!domain.periodic[static_cast<std::size_t>(axis)] ||
-        std::fabs(wall.normal[axis]) <= kParallel)
-      continue;
-    return PlaneAcrossPeriod{
-        axis,
-        fmt::format("the plane '{}' lies across the periodic axis {}: one period further it would "
-                    "be another plane",
-                    wall.name, "xyz"[axis]),
-        fmt::format("give it a normal with {} = 0, write kind = \"plate\" with a width, or take {} "
-                    "out of domain.periodic",
-                    "xyz"[axis], "xyz"[axis])};
-  }
-  return std::nullopt;
-}
-
 std::optional<std::string> intrusion(const WallSpec& wall, const WallFoot& foot,
                                      const ParticleData& particle, int dimension) {
   if (particle.fixed && !wall.is_loaded) return std::nullopt;
@@ -80,8 +56,6 @@ std::optional<std::string> intrusion(const WallSpec& wall, const WallFoot& foot,
 
 void check_walls(const Model& model, const ParticleSet& set) {
   for (const WallSpec& wall : model.walls) {
-    if (const auto across = plane_across_period(wall, model.domain, model.dimension))
-      throw InputError(place_of(model, wall), across->what, across->remedy);
     for_each_intruder(model, wall, set, [&](const ParticleData& p, const std::string& what) {
       if (wall.from_stage <= 0 || p.fixed) throw InputError(place_of(model, wall), what, kRemedy);
     });

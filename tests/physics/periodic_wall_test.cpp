@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include <barchan/core/error.hpp>
-#include <barchan/core/generators/check_walls.hpp>
 
 #include "physics_case.hpp"
 
@@ -139,7 +138,7 @@ std::string refusal(const std::string& deck) {
 TEST(PeriodicWall, APlaneAcrossAPeriodicAxisIsRefused) {
   const std::string what = refusal(box_with("position = [0.5, 0.5], radius = 0.05",
                                             "point = [0.0, 0.0]\nnormal = [1.0, 0.0]\n"));
-  EXPECT_TRUE(what.starts_with("box.toml:20:")) << what;
+  EXPECT_TRUE(what.starts_with("box.toml:23:")) << what;
   EXPECT_NE(what.find("plane 'w' lies across the periodic axis x"), std::string::npos) << what;
   EXPECT_NE(refusal(box_with("position = [0.5, 0.5], radius = 0.05",
                              "point = [0.0, 0.0]\nnormal = [0.01, 1.0]\n"))

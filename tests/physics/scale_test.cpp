@@ -88,7 +88,7 @@ local_damping = 0.1
 /// Positions in lengths, velocities in lengths over times, and the plate's.
 std::vector<double> state_of(int dimension, int k, int j, int m) {
   auto simulation = test::simulate(heap(dimension, k, j, m));
-  simulation.run(900);
+  simulation.run(1500);
   const Measures measures = simulation.measure();
   std::vector<double> state;
   simulation.for_each_owned([&](const OwnedParticle& p) {

@@ -143,7 +143,7 @@ TEST(Checkpoint, BringsBackWhatWasPutIn) {
   EXPECT_EQ(shares[1].ids, expected.ids);
   EXPECT_EQ(shares[1].velocities, expected.velocities);
   EXPECT_EQ(shares[1].totals, expected.totals);
-  EXPECT_EQ(shares[1].wall_contact_images, (std::vector<std::int32_t>{-1, 0, 2}));
+  EXPECT_EQ(shares[1].wall_contact_images, (std::vector<std::int32_t>{-1, 0, 2, -1, 0, 2}));
   EXPECT_TRUE(std::signbit(shares[1].wall_contact_springs[0]))
       << "the sign of a zero is part of the state";
 }
