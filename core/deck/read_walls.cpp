@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <barchan/core/deck/readers.hpp>
+#include <barchan/core/generators/check_walls.hpp>
 
 namespace barchan::deck {
 
@@ -74,6 +75,7 @@ WallSpec read_wall(const TableReader& table, const DeckDraft& draft) {
   wall.point = table.vector("point");
   wall.normal = read_normal(table);
   wall.velocity = table.vector("velocity");
+  wall.place = table.place();
   if (const auto stage = table.optional_string("from_stage")) {
     wall.from_stage = draft.stages.at(*stage, table.place("from_stage"));
   }
@@ -82,6 +84,9 @@ WallSpec read_wall(const TableReader& table, const DeckDraft& draft) {
   } else {
     refuse_on(table, {"width", "depth", "load", "mass", "damping"}, "a plane",
               "remove it, or write kind = \"plate\"");
+    const Model& model = draft.deck.model;
+    if (const auto across = plane_across_period(wall, model.domain, model.dimension))
+      table.fail("normal", across->what, across->remedy);
   }
   return wall;
 }
