@@ -9,6 +9,7 @@
 #include <barchan/app/commands.hpp>
 #include <barchan/app/loaded_deck.hpp>
 #include <barchan/app/readable.hpp>
+#include <barchan/tasks/forecast.hpp>
 #include <barchan/tasks/memory_estimate.hpp>
 #include <barchan/tasks/stability.hpp>
 #include <barchan/tasks/strip_plan.hpp>
@@ -158,6 +159,10 @@ void print_step(const Model& model, const std::vector<StepLimit>& limits) {
   }
 }
 
+void warn(const std::string& what) {
+  std::printf("  Warning: %s.\n", what.c_str());
+}
+
 }  // namespace
 
 void check_deck(const CheckArguments& arguments) {
@@ -171,6 +176,10 @@ void check_deck(const CheckArguments& arguments) {
   print_walls(model);
   print_stages(model);
   print_step(model, limits);
+  for (const std::string& warning : speed_warnings(model, loaded.particles)) warn(warning);
+  for (const std::string& warning : precision_warnings(model, loaded.particles)) warn(warning);
+  std::fflush(stdout);
+  check_precision(model, loaded.particles);
   print_strips(loaded, arguments.ranks);
   std::fflush(stdout);
   check_time_step(model, limits);

@@ -20,7 +20,8 @@ struct Band {
   PairList across;
   std::vector<PairBlock> blocks;        ///< of `across`
   std::vector<PairBlock> inner_blocks;  ///< of the pairs within the band that wait for its ghosts
-  double travel = 0.0;  ///< bound of how far ghosts have come since the last rebuild [m]
+  bool has_quick = false;  ///< a ghost moved farther than World::quick_travel in the last step
+  double travel = 0.0;     ///< bound of how far ghosts have come since the last rebuild [m]
 };
 
 }  // namespace barchan

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -17,6 +18,7 @@
 #include <barchan/core/measures.hpp>
 #include <barchan/core/pair_list.hpp>
 #include <barchan/core/particle_store.hpp>
+#include <barchan/core/passage.hpp>
 #include <barchan/core/walls.hpp>
 #include <barchan/core/world.hpp>
 
@@ -77,9 +79,11 @@ class Lane {
   LinkCounts remove(std::span<const std::int64_t> ids);
 
   // ---- what a run that goes wrong says (lane_watch.cpp), between steps
-  /// A particle moved farther than half the skin in the last step, or is not finite.
-  [[nodiscard]] bool is_fast() const { return speeds_.is_beyond; }
-  /// The first one that did, in canonical order. @pre is_fast()
+  /// A particle moved farther than World::most_travel in the last step, or is not finite; or one
+  /// passed another in the step before.
+  [[nodiscard]] bool is_fast() const { return is_beyond_ || passage_.exists(); }
+  [[nodiscard]] const Passage& passage() const { return passage_; }
+  /// The first one that did, in canonical order. @pre is_fast(), and nothing passed
   [[nodiscard]] std::int32_t first_fast_row() const;
   /// The fastest one; one that is not finite before all others. -1: there is none
   [[nodiscard]] std::int32_t fastest_row() const;
@@ -206,8 +210,15 @@ class Lane {
   [[nodiscard]] PairJob block_job(PairList& list, PairBlock& block, double travel);
   void pick_touching(PairList& list, PairBlock& block, PairJob& pairs, double travel);
   [[nodiscard]] double packing_margin() const;  ///< [m]
-  /// Of a component of velocity: half the skin in a step [m/s].
-  [[nodiscard]] double most_speed() const { return 0.5 * world_->skin / world_->dt; }
+  /// Of a component of velocity, beyond which travel() is looked at [m/s].
+  [[nodiscard]] double quick_speed() const {
+    return world_->quick_travel / (std::sqrt(double{Dim}) * world_->dt);
+  }
+  [[nodiscard]] double step_travel(std::int32_t row) const;
+  void judge_speeds(Rows rows);
+  [[nodiscard]] bool has_quick(Rows rows) const;
+  void find_quick();
+  void look_for_passages();
   void pack(PairList& list, PairBlock& block, const std::uint8_t* masks);
   [[nodiscard]] bool packs() const {
     return world_->kernels.narrow != nullptr && world_->search == ContactSearchKind::Cells;
@@ -270,8 +281,12 @@ class Lane {
   std::int64_t steps_since_start_ = 0;
   SearchSeconds search_seconds_;
   int slab_begin_ = 0, slab_end_ = 0;
-  double last_distance2_ = 0.0;              ///< of the last step with the lists before these
-  RowSpeeds speeds_;                         ///< of the rows of this step
+  double last_distance2_ = 0.0;  ///< of the last step with the lists before these
+  RowSpeeds speeds_;             ///< of the rows of this step
+  bool is_beyond_ = false;       ///< see is_fast()
+  bool has_quick_ = false;       ///< an owned row moved farther than quick_travel
+  bool looks_ = false;           ///< for passages, in this step
+  Passage passage_;
   double step_travel_ = 0.0, travel_ = 0.0;  ///< bounds: of the last step, since the lists were cut
 
   /// A contact's spring while lists are made anew, by the rows that it had before.

@@ -173,6 +173,7 @@ void Lane<Dim>::put_back(const CheckpointShare& share) {
     std::copy_n(share.surface_speeds.data() + source * kSpins<Dim>, int{kSpins<Dim>},
                 store_.u(row));
   }
+  find_quick();
 }
 
 template void Lane<2>::save(CheckpointShare&);

@@ -41,9 +41,7 @@ void take_worst_pair(const ParticleStore<Dim>& store, const PeriodicBox& box, co
 /// The largest number when something is not finite.
 template <int Dim>
 double speed2(const ParticleStore<Dim>& store, std::int32_t row) {
-  double v2 = 0.0;
-  for (int c = 0; c < Dim; ++c) v2 += store.v(row)[c] * store.v(row)[c] + 0.0 * store.x(row)[c];
-  return std::isfinite(v2) ? v2 : std::numeric_limits<double>::max();
+  return suspect_of(store, row).speed2;
 }
 
 }  // namespace
@@ -96,13 +94,54 @@ LinkCounts Lane<Dim>::remove(std::span<const std::int64_t> ids) {
 
 template <int Dim>
 std::int32_t Lane<Dim>::first_fast_row() const {
-  const double most = most_speed();
   for (std::int32_t i = 0; i < store_.num_owned; ++i) {
-    for (int c = 0; c < Dim; ++c) {
-      if (!(std::fabs(store_.v(i)[c]) <= most) || !std::isfinite(store_.x(i)[c])) return i;
-    }
+    if (!(step_travel(i) <= world_->most_travel)) return i;
   }
   return fastest_row();
+}
+
+/// How far a row moved in its last step [m]; no number where its state is none.
+template <int Dim>
+double Lane<Dim>::step_travel(std::int32_t row) const {
+  const double *x = store_.x(row), *v = store_.v(row), *u = store_.u(row);
+  double v2 = 0.0, zero = 0.0;
+  for (int c = 0; c < Dim; ++c) v2 += v[c] * v[c], zero += 0.0 * x[c];
+  for (int c = 0; c < kSpins<Dim>; ++c) zero += 0.0 * u[c];
+  return std::sqrt(v2) * world_->dt + zero;
+}
+
+template <int Dim>
+void Lane<Dim>::judge_speeds(Rows rows) {
+  for (std::int32_t i = rows.begin; i < rows.end; ++i) {
+    const double travel = step_travel(i);
+    is_beyond_ = is_beyond_ || !(travel <= world_->most_travel);
+    has_quick_ = has_quick_ || travel > world_->quick_travel;
+  }
+}
+
+template <int Dim>
+bool Lane<Dim>::has_quick(Rows rows) const {
+  for (std::int32_t i = rows.begin; i < rows.end; ++i) {
+    if (step_travel(i) > world_->quick_travel) return true;
+  }
+  return false;
+}
+
+/// After rows have come and gone.
+template <int Dim>
+void Lane<Dim>::find_quick() {
+  has_quick_ = has_quick({0, store_.num_owned});
+  for (const Side side : {Left, Right}) {
+    const std::int32_t begin = store_.ghost_begin(side);
+    bands_[side].has_quick =
+        has_quick({begin, begin + store_.num_ghosts[static_cast<std::size_t>(side)]});
+  }
+}
+
+template <int Dim>
+void Lane<Dim>::look_for_passages() {
+  const PassageWatch<Dim> watch(*world_, store_, passage_);
+  for (const PairList& list : lists_) watch.look_at(list);
 }
 
 template <int Dim>
@@ -118,13 +157,7 @@ std::int32_t Lane<Dim>::fastest_row() const {
 
 template <int Dim>
 Suspect Lane<Dim>::suspect(std::int32_t row) const {
-  Suspect s;
-  s.id = store_.id[static_cast<std::size_t>(row)];
-  std::copy_n(store_.x(row), Dim, s.position);
-  std::copy_n(store_.v(row), Dim, s.velocity);
-  s.radius = store_.radius(row);
-  s.speed2 = speed2(store_, row);
-  return s;
+  return suspect_of(store_, row);
 }
 
 template <int Dim>
@@ -204,10 +237,20 @@ template std::vector<Departure> Lane<3>::outside(std::int64_t) const;
 template bool Lane<2>::counts_bond(std::int32_t) const;
 template bool Lane<3>::counts_bond(std::int32_t) const;
 template std::int32_t Lane<2>::first_fast_row() const;
+template double Lane<2>::step_travel(std::int32_t) const;
+template void Lane<2>::judge_speeds(Rows);
+template bool Lane<2>::has_quick(Rows) const;
+template void Lane<2>::find_quick();
+template void Lane<2>::look_for_passages();
 template std::int32_t Lane<2>::fastest_row() const;
 template Suspect Lane<2>::suspect(std::int32_t) const;
 template void Lane<2>::find_touching(const Suspect&, std::vector<std::int64_t>&) const;
 template std::int32_t Lane<3>::first_fast_row() const;
+template double Lane<3>::step_travel(std::int32_t) const;
+template void Lane<3>::judge_speeds(Rows);
+template bool Lane<3>::has_quick(Rows) const;
+template void Lane<3>::find_quick();
+template void Lane<3>::look_for_passages();
 template std::int32_t Lane<3>::fastest_row() const;
 template Suspect Lane<3>::suspect(std::int32_t) const;
 template void Lane<3>::find_touching(const Suspect&, std::vector<std::int64_t>&) const;

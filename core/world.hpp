@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <barchan/core/bonds.hpp>
@@ -23,8 +25,19 @@ struct World {
   std::vector<WallState> walls;
   ContactSearchKind search = ContactSearchKind::Cells;
   double skin = 0.0;  ///< [m]
-  double dt = 0.0;    ///< [s]
+  /// Half of the smallest radius: where nothing moves farther in a step, no contact is skipped [m].
+  double quick_travel = std::numeric_limits<double>::infinity();
+  /// Beyond this travel in a step nobody looks whether a contact was skipped [m].
+  double most_travel = std::numeric_limits<double>::infinity();
+  double dt = 0.0;  ///< [s]
   std::int64_t num_particles = 0;
+
+  /// Where two move by most_travel each, either no contact is skipped, or lists have all those that
+  /// might be.
+  void set_guards(double smallest_radius) {
+    quick_travel = 0.5 * smallest_radius;
+    most_travel = 0.5 * std::max(skin, smallest_radius);
+  }
 };
 
 /// What changes from step to step.

@@ -68,6 +68,7 @@ std::int64_t Simulation::EngineOf<Dim>::go_on(std::int64_t most) {
     schedule_->begin_check(check_numbers(), {stop_is_requested(), wants_checkpoint()});
   schedule_->poll();
   plates_->drive(world_.walls, step_);
+  watch_walls();
 
   StepFrame frame;
   frame.kick = step_ == 0 ? 0.5 * world_.dt : world_.dt;
@@ -95,23 +96,30 @@ int Simulation::EngineOf<Dim>::steps_in_a_go(std::int64_t most) {
       world_.walls.begin(), world_.walls.end(),
       [](const WallState& wall) { return !wall.is_active || wall.velocity == Vec3::Zero(); });
   if (!is_last_stage || !walls_stand || plates_->needs_forces(world_.walls)) return 1;
-  const auto steps_until = [&](std::int64_t end) {
+  const auto steps_until = [&](std::int64_t end, bool holds = false) {
     std::int64_t steps = 1;
-    end = std::min(end, step_ + most);
+    end = std::min({end, step_ + most, holds ? end : life_->end()});
     while (step_ + steps < end && !(keeper_ && keeper_->is_due(step_ + steps))) ++steps;
     return static_cast<int>(steps);
   };
-  if (schedule_->is_check_due(step_)) {
+  if (schedule_->is_check_due(step_) && life_->end() >= step_ + RebuildSchedule::kLag) {
     const auto foreseen = schedule_->foresee();
     const int steps =
-        foreseen && is_harmless(foreseen->answer) ? steps_until(foreseen->next_check) : 0;
+        foreseen && is_harmless(foreseen->answer) ? steps_until(foreseen->next_check, true) : 0;
     if (steps > RebuildSchedule::kLag) {
       (void)schedule_->must_rebuild(step_ + RebuildSchedule::kLag);
-      (void)schedule_->take_answer();
+      hear(*schedule_->take_answer(), step_, true);
       return steps;
     }
   }
   return steps_until(schedule_->next_part(step_));
+}
+
+/// @param holds  lists do until the next answer
+template <int Dim>
+void Simulation::EngineOf<Dim>::hear(const CheckNumbers& answer, std::int64_t of_step, bool holds) {
+  life_->hear(answer.speed, of_step);
+  if (holds) life_->lift();
 }
 
 /// The earliest step in which a lane was, and in that the first lane.
@@ -154,9 +162,12 @@ void Simulation::EngineOf<Dim>::update_lists() {
     must_save_ = true;
     forget_checkpoint_request();
   }
-  if (const auto answer = schedule_->take_answer()) judge(*answer);
+  if (const auto answer = schedule_->take_answer()) {
+    hear(*answer, step_ - RebuildSchedule::kLag, !travelled);
+    judge(*answer);
+  }
   if (must_remove_) remove_outside();
-  if (!travelled && !must_rebuild_) return;
+  if (!travelled && !must_rebuild_ && step_ < life_->end()) return;
   size_chunks();
   const double begin = now();
   const double walls_went = wall_distance2();
@@ -169,6 +180,7 @@ void Simulation::EngineOf<Dim>::update_lists() {
   watch_overlap();
   watch_growth();
   schedule_->rebuilt(step_);
+  life_->renew(step_);
   must_rebuild_ = false;
   rebuild_seconds_ += now() - begin;
   if (trace_)

@@ -7,6 +7,7 @@
 #include <barchan/tasks/checkpoint_keeper.hpp>
 #include <barchan/tasks/checkpoint_load.hpp>
 #include <barchan/tasks/exchange_setup.hpp>
+#include <barchan/tasks/list_life.hpp>
 #include <barchan/tasks/plates.hpp>
 #include <barchan/tasks/rebuild_schedule.hpp>
 #include <barchan/tasks/simulation.hpp>
@@ -98,6 +99,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   void make_trace();
   std::int64_t go_on(std::int64_t most);
   [[nodiscard]] int steps_in_a_go(std::int64_t most);
+  void hear(const CheckNumbers& answer, std::int64_t of_step, bool holds);
   void stop_if_fast();
   void update_lists();
   void size_chunks();
@@ -115,6 +117,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   void remove_outside();
   void watch_overlap();
   void watch_growth();
+  void watch_walls() const;
   [[nodiscard]] double wall_distance2() const;
   // engine_report.cpp
   void note(std::string text, bool is_warning = false);
@@ -123,6 +126,8 @@ class Simulation::EngineOf final : public Simulation::Engine {
   [[noreturn]] void report_outrun(const CheckNumbers& answer);
   [[noreturn]] void report_departures(const std::vector<Departure>& departures);
   [[noreturn]] void report_fast(int lane);
+  [[noreturn]] void report_passage(const Passage& passage) const;
+  [[nodiscard]] std::string remedy_for_travel(double travel) const;
   [[nodiscard]] std::string describe(const Suspect& suspect,
                                      const typename Lane<Dim>::Partners& touched) const;
   [[nodiscard]] typename Lane<Dim>::Partners partners_of(const Suspect& suspect);
@@ -136,6 +141,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   std::unique_ptr<Strip<Dim>> strip_;
   std::unique_ptr<StepGraph<Dim>> graph_;
   std::unique_ptr<RebuildSchedule> schedule_;
+  std::unique_ptr<ListLife> life_;
   std::unique_ptr<Plates> plates_;
   std::vector<Vec3> walls_at_rebuild_;
   std::int64_t stage_begin_ = 0;

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -82,6 +83,9 @@ CheckpointState Simulation::EngineOf<Dim>::state() {
   s.has_check = schedule.has_check;
   s.check = schedule.check;
   s.check_particles = schedule.num_particles;
+  s.lists_end = life_->state().end;
+  s.speed_step = life_->state().heard_at;
+  s.speed = life_->state().speed;
   s.left_particles = left_.particles;
   s.left_contacts = left_.links.contacts;
   s.left_wall_contacts = left_.links.wall_contacts;
@@ -115,6 +119,12 @@ template <int Dim>
 void Simulation::EngineOf<Dim>::restore_particles(const OpenCheckpoint& checkpoint) {
   const LoadedShares loaded =
       load_shares<Dim>(communicator_, checkpoint, model_, world_.grid, strip_->num_lanes());
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const CheckpointShare& share : loaded.shares) {
+    for (const double radius : share.radii) smallest = std::min(smallest, radius);
+  }
+  communicator_.allreduce_min(std::span(&smallest, 1));
+  world_.set_guards(smallest);
   strip_->restore(loaded.cuts, loaded.shares);
   check_restored(checkpoint);
   if (!communicator_.is_root()) return;
@@ -171,6 +181,7 @@ void Simulation::EngineOf<Dim>::restore(const OpenCheckpoint& checkpoint) {
   left_ = {s.left_particles, {s.left_contacts, s.left_wall_contacts, s.left_bonds}};
   schedule_->restore({s.check_step, s.interval, s.has_check, s.check, s.check_particles},
                      communicator_.is_root());
+  life_->restore({s.lists_end, s.speed_step, s.speed});
   plates_->restore(s.plate_forces, communicator_.is_root());
 }
 

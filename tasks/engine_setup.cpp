@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -7,6 +8,7 @@
 #include <barchan/core/error.hpp>
 #include <barchan/core/generators/make_particles.hpp>
 #include <barchan/tasks/engine.hpp>
+#include <barchan/tasks/forecast.hpp>
 #include <barchan/tasks/stability.hpp>
 #include <barchan/tasks/strip_plan.hpp>
 #include <barchan/tasks/threads.hpp>
@@ -19,12 +21,26 @@ Simulation::EngineOf<Dim>::EngineOf(const Model& model, const ParticleSet& parti
     : Engine(model, std::move(communicator), options) {
   check_particles(model_, particles);
   check_time_step(model_, step_limits(model_, particles));
+  check_precision(model_, particles);
+  if (communicator_.is_root()) {
+    for (std::string& warning : precision_warnings(model_, particles))
+      note(std::move(warning), true);
+  }
   num_particles_ = static_cast<std::int64_t>(particles.particles.size());
   const double skin = model_.search.skin.value_or(default_skin(particles));
   make_world({skin, search_reach(particles, skin), num_particles_, !particles.bonds.empty()});
   make_strip();
+  double smallest = std::numeric_limits<double>::infinity(), speed = 0.0;
+  for (const ParticleData& p : particles.particles) {
+    smallest = std::min(smallest, p.radius);
+    speed = std::max(speed, p.velocity.norm());
+  }
+  for (const WallSpec& wall : model_.walls) speed = std::max(speed, wall.velocity.norm());
+  world_.set_guards(smallest);
   strip_->seed(particles);
   make_loop();
+  life_->hear(speed, 0);
+  life_->renew(0);
 }
 
 template <int Dim>
@@ -42,6 +58,7 @@ void Simulation::EngineOf<Dim>::make_loop() {
   graph_ = std::make_unique<StepGraph<Dim>>(*strip_, options_);
   schedule_ = std::make_unique<RebuildSchedule>(communicator_, world_.skin, world_.dt,
                                                 model_.gravity.norm());
+  life_ = std::make_unique<ListLife>(world_.skin, world_.dt, model_.gravity.norm());
   plates_ = std::make_unique<Plates>(communicator_, world_.wall_specs, world_.dt);
   if (options_.trace) make_trace();
   watch_growth();

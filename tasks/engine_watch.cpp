@@ -177,6 +177,22 @@ void Simulation::EngineOf<Dim>::watch_overlap() {
   for (const double share : shares) overlap_ = std::max(overlap_, share);
 }
 
+/// Plates have no thickness, and given velocities no limit.
+template <int Dim>
+void Simulation::EngineOf<Dim>::watch_walls() const {
+  for (std::size_t w = 0; w < world_.walls.size(); ++w) {
+    const WallState& wall = world_.walls[w];
+    const double travel = world_.dt * wall.velocity.norm();
+    if (!wall.is_active || model_.walls[w].kind != WallKind::Plate || travel <= world_.most_travel)
+      continue;
+    throw AgreedError(fmt::format(
+        "at step {} wall '{}' moves {:.3g} m in one step, more than half of the smallest radius "
+        "({:.3g} m) and of the skin ({:.3g} m), so that it may pass particles unseen; {}",
+        step_, model_.walls[w].name, travel, 2.0 * world_.quick_travel, world_.skin,
+        remedy_for_travel(travel)));
+  }
+}
+
 /// After a rebuild. Buffers grow by themselves; here it is only told, once they have grown by a
 /// quarter.
 template <int Dim>

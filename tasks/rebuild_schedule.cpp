@@ -28,6 +28,7 @@ int RebuildSchedule::next_interval(double distance, double speed, double skin, d
 }
 
 void RebuildSchedule::begin_check(const CheckNumbers& mine, Wishes wishes) {
+  is_asked_ = true;
   const double maxima[kMaxima] = {mine.distance,
                                   mine.speed,
                                   static_cast<double>(mine.outside),
@@ -66,8 +67,9 @@ std::optional<RebuildSchedule::Foresight> RebuildSchedule::foresee() {
 }
 
 bool RebuildSchedule::must_rebuild(std::int64_t step) {
-  if (step != check_step_ + kLag) return false;
+  if (!is_asked_ || step != check_step_ + kLag) return false;
   wait();
+  is_asked_ = false;
   stop_agreed_ = reduction_.maxima()[4] > 0.0;
   save_agreed_ = reduction_.maxima()[5] > 0.0;
   answer_ = numbers();
@@ -79,7 +81,9 @@ bool RebuildSchedule::must_rebuild(std::int64_t step) {
 }
 
 void RebuildSchedule::rebuilt(std::int64_t step) {
-  if (reduction_.is_in_flight()) wait();  // a rebuild for another reason; the answer is stale
+  // A check under way, or due now, goes on: without the speeds that it finds nobody knows how long
+  // the next lists serve. Its distance is that of lists before these, and so never too small.
+  if (is_asked_ || check_step_ == step) return;
   interval_ = std::max(interval_ / 2, 1);
   check_step_ = step + interval_;
 }

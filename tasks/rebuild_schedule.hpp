@@ -81,8 +81,8 @@ class RebuildSchedule {
   /// Whether some rank wished to save; true once.
   [[nodiscard]] bool take_save_agreed() { return std::exchange(save_agreed_, false); }
   [[nodiscard]] double wait_seconds() const { return wait_seconds_; }  ///< for answers
-  void poll();  ///< lets the reduction advance
-  void rebuilt(std::int64_t step);
+  void poll();                      ///< lets the reduction advance
+  void rebuilt(std::int64_t step);  ///< lists were made anew before `step`
 
   /// For checkpoints, before `step`. Waits for a check's answer.
   [[nodiscard]] State state(std::int64_t step);
@@ -99,6 +99,7 @@ class RebuildSchedule {
   double skin_, dt_, gravity_;
   std::int64_t check_step_ = 0;
   int interval_ = 0;
+  bool is_asked_ = false;  ///< the check is begun, and not answered
   bool stop_agreed_ = false, save_agreed_ = false;
   double wait_seconds_ = 0.0;
 

@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 constexpr const char* kFormat = "barchan checkpoint";
 constexpr std::string_view kHashMember = ",\n\"xxh3\": \"";
 constexpr std::string_view kEnd = "\"}\n";

@@ -36,6 +36,9 @@ CheckpointState take_state(ByteReader& in) {
   s.has_check = in.take<std::uint8_t>() != 0;
   s.check = in.take<std::array<double, 4>>();
   s.check_particles = in.take<std::int64_t>();
+  s.lists_end = in.take<std::int64_t>();
+  s.speed_step = in.take<std::int64_t>();
+  s.speed = in.take<double>();
   for (std::int64_t* count :
        {&s.left_particles, &s.left_contacts, &s.left_wall_contacts, &s.left_bonds})
     *count = in.take<std::int64_t>();
@@ -115,6 +118,9 @@ std::vector<std::byte> encode(const CheckpointState& s) {
   out.put(static_cast<std::uint8_t>(s.has_check));
   out.put(s.check);
   out.put(s.check_particles);
+  out.put(s.lists_end);
+  out.put(s.speed_step);
+  out.put(s.speed);
   for (const std::int64_t count :
        {s.left_particles, s.left_contacts, s.left_wall_contacts, s.left_bonds})
     out.put(count);
@@ -141,7 +147,9 @@ CheckpointState decode_state(std::span<const std::byte> bytes, const std::string
                        state.stage_begin <= state.step && state.skin >= 0.0 &&
                        std::isfinite(state.skin) && positive(state.reach) &&
                        state.start_particles >= 0 && state.interval >= 0 && state.interval < 1024 &&
-                       state.check_step >= 0 && std::abs(state.check_step - state.step) < 1024;
+                       state.lists_end >= 0 && state.speed_step >= 0 &&
+                       state.speed_step <= state.step && state.check_step >= 0 &&
+                       std::abs(state.check_step - state.step) < 1024;
   if (!is_sane) refuse(file, "the state is not valid", "take another checkpoint");
   return state;
 }

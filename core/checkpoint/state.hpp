@@ -41,6 +41,8 @@ struct CheckpointState {
   bool has_check = false;
   std::array<double, 4> check{};
   std::int64_t check_particles = 0;
+  std::int64_t lists_end = 0, speed_step = 0;  ///< see ListLife
+  double speed = 0.0;
 
   // What left the domain since the start, and the links that went with it.
   std::int64_t left_particles = 0, left_contacts = 0, left_wall_contacts = 0, left_bonds = 0;

@@ -50,6 +50,7 @@ class RunResults {
   RunSummary finish(bool interrupted = false);
 
  private:
+  void append_row();
   void list_departures();
 
   Simulation& simulation_;

@@ -55,7 +55,7 @@ TEST(Culprit, OneThatOutranTheSkinIsNamedAlikeOnAnyNumberOfRanksAndThreads) {
   int told = 0, way = 0;
   for (std::int64_t id = 1; id <= 161; id += 20) {
     const auto error = [&](MPI_Comm comm, const RunOptions& options) {
-      return error_after_push<AgreedError>(s, comm, options, id, 6e4);
+      return error_after_push<AgreedError>(s, comm, options, id, 1.5e5);
     };
     const std::string expected = from_root(is_root() ? error(MPI_COMM_SELF, with_threads(1)) : "");
     const auto exchange = exchange_names()[static_cast<std::size_t>(way) % exchange_names().size()];
