@@ -1,5 +1,7 @@
 #include <barchan/app/command_line.hpp>
 
+#include <charconv>
+#include <cmath>
 #include <memory>
 #include <sstream>
 
@@ -41,6 +43,23 @@ CLI::Validator one_of(const std::vector<std::string>& words) {
       "{" + listed(words) + "}");
 }
 
+/// Turns 1e3 into 1000; leaves the rest to the option.
+CLI::Validator whole_number() {
+  return CLI::Validator(
+      [](std::string& word) -> std::string {
+        double value = 0.0;
+        const char* end = word.data() + word.size();
+        const auto read = std::from_chars(word.data(), end, value);
+        const bool has_exponent = word.find_first_of(".eE") != std::string::npos;
+        if (read.ec != std::errc() || read.ptr != end || !has_exponent) return {};
+        if (value != std::floor(value) || std::abs(value) > 0x1p53)
+          return word + " is not a whole number up to 2^53";
+        word = fmt::format("{:.0f}", value);
+        return {};
+      },
+      "");
+}
+
 /// `replay` records a run first, so that it is no exchange of its own.
 std::vector<std::string> with_replay(std::vector<std::string> names) {
   names.emplace_back("replay");
@@ -70,6 +89,7 @@ void add_run(CLI::App& root, RunArguments& run, Words& words) {
       ->type_name("DIR");
   command.add_option("--steps", run.steps, "Number of steps, instead of the deck's")
       ->type_name("N")
+      ->transform(whole_number())
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53));
   command
       .add_option(

@@ -10,7 +10,9 @@ LoadedDeck load_deck(const std::string& path, const std::vector<std::string>& se
   LoadedDeck loaded;
   loaded.deck = read_deck(path, overrides);
   loaded.particles = make_particles(loaded.deck.model, loaded.deck.sources, loaded.begins);
-  check_particles(loaded.deck.model, loaded.particles);
+  check_particles(loaded.deck.model, loaded.particles, [&](std::size_t index) {
+    return place_of_particle(loaded.deck.sources, loaded.begins, index);
+  });
   return loaded;
 }
 

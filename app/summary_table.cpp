@@ -1,11 +1,14 @@
 #include <barchan/app/summary_table.hpp>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 
 #include <fmt/format.h>
 
 #include <barchan/app/readable.hpp>
+#include <barchan/app/terminal.hpp>
 
 namespace barchan::app {
 namespace {
@@ -90,7 +93,7 @@ void print_summary(const RunSummary& s, const RunFolder& folder, const Model& mo
     std::printf("Interrupted at step %s of %s; the results are those of that step.\n",
                 grouped(s.steps).c_str(), grouped(model.time.num_steps).c_str());
   }
-  std::fputs(table(rows, 2).c_str(), stdout);
+  std::fputs(table(wrapped_within(rows, columns_of(STDOUT_FILENO)), 2).c_str(), stdout);
   std::fflush(stdout);
 }
 

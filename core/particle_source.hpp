@@ -92,6 +92,7 @@ struct RingSource {
 /// source's; ids are zero.
 struct ListSource {
   std::vector<ParticleData> particles;
+  std::vector<SourcePlace> places{};  ///< of each in the deck; empty: not from one
 };
 
 /// One [[particles]] table. Sources follow each other in deck order, and so do the ids of their

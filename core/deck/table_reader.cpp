@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <barchan/core/deck/nearest.hpp>
+#include <barchan/core/deck/not_modelled.hpp>
 #include <barchan/core/deck/values.hpp>
 
 namespace barchan::deck {
@@ -43,6 +44,12 @@ void TableReader::refuse_unknown(const Node::Member& member) const {
     const bool is_here = spec.table == table_ || (!more_.empty() && spec.table == more_);
     if (is_here) known.push_back(spec.key);
     if (spec.key == member.key && elsewhere.empty()) elsewhere = spec.table;
+  }
+  if (const auto left_out = find_not_modelled(member.key)) {
+    throw InputError(
+        member.place,
+        fmt::format("{} in {}: {} not modelled", member.key, table_, left_out->physics),
+        std::string(left_out->instead));
   }
   std::string remedy = suggest(member.key, known);
   if (!elsewhere.empty()) remedy += fmt::format("; {} is a key of {}", member.key, elsewhere);
@@ -162,7 +169,9 @@ std::vector<const Node*> TableReader::tables(std::string_view key) const {
   const Node* found = value(key);
   if (!found) return {};
   if (found->kind != Node::Kind::Array) {
-    fail_type(*found, key, "an array of tables", fmt::format("head each with [[{}]]", key));
+    fail_type(*found, key, "an array of tables",
+              table_ == "deck" ? fmt::format("head each with [[{}]]", key)
+                               : fmt::format("write {} = [{{ ... }}, ...]", key));
   }
   std::vector<const Node*> nodes;
   for (const Node& item : found->items) {

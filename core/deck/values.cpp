@@ -77,11 +77,16 @@ double checked_number(const Node& node, const KeySpec& spec) {
 }
 
 std::int64_t checked_integer(const Node& node, const KeySpec& spec) {
-  if (node.kind != Node::Kind::Integer) {
-    fail_type(node, spec.key, "an integer", "write it without quotes and without a decimal point");
+  constexpr double kExact = 0x1p53;  // up to here every whole number is a double
+  if (!node.is_number())
+    fail_type(node, spec.key, "an integer", "write it without quotes, such as 1000 or 1e3");
+  const double value = checked_number(node, spec);
+  if (node.kind == Node::Kind::Integer) return node.integer;
+  if (value != std::floor(value) || std::abs(value) > kExact) {
+    throw InputError(node.place(), fmt::format("{} = {} is not a whole number", spec.key, value),
+                     "write one, such as 1000 or 1e3, at most 9007199254740992 with an exponent");
   }
-  checked_number(node, spec);
-  return node.integer;
+  return static_cast<std::int64_t>(value);
 }
 
 std::string checked_string(const Node& node, const KeySpec& spec) {

@@ -12,6 +12,7 @@
 #include <barchan/core/generators/make_particles.hpp>
 #include <barchan/core/generators/packing.hpp>
 #include <barchan/core/io/particle_file.hpp>
+#include <barchan/core/vec_text.hpp>
 
 namespace barchan {
 namespace {
@@ -102,7 +103,11 @@ class Maker {
     for (const ParticleData& particle : set_.particles) taken.insert(particle.id);
     for (std::size_t i = 0; i < file.particles.size(); ++i) {
       const std::int64_t id = file.particles[i].id;
-      if (id < kHighest && !taken.contains(id)) continue;
+      if (id >= kHighest)
+        throw InputError(SourcePlace{file.file, file.lines[i], 0},
+                         fmt::format("particle id {} is too large", id),
+                         fmt::format("ids go up to {}", kHighest - 1));
+      if (!taken.contains(id)) continue;
       throw InputError(
           SourcePlace{file.file, file.lines[i], 0},
           fmt::format("particle id {} is already taken", id),
@@ -129,8 +134,8 @@ class Maker {
       refuse("leaves the plane", "in 2D z, vz, omegax and omegay are zero");
     wrap(particle.position, model_.domain, model_.dimension);
     if (!is_inside(model_.domain, particle.position, model_.dimension)) {
-      refuse(fmt::format("at ({:.6g}, {:.6g}, {:.6g}) is outside the domain", particle.position.x(),
-                         particle.position.y(), particle.position.z()),
+      refuse(fmt::format("at {} is outside the domain",
+                         in_brackets(particle.position, model_.dimension)),
              "enlarge the domain or leave the particle out");
     }
     particle.velocity += source.velocity;
@@ -160,11 +165,10 @@ class Maker {
     if (source.fixed && box_contains(*source.fixed, particle.position, model_.dimension))
       particle.fixed = true;
     if (is_inside(model_.domain, particle.position, model_.dimension)) return;
-    throw InputError(
-        source.place,
-        fmt::format("particle {} at ({:.6g}, {:.6g}, {:.6g}) is outside the domain", particle.id,
-                    particle.position.x(), particle.position.y(), particle.position.z()),
-        "keep the source within the domain");
+    throw InputError(source.place,
+                     fmt::format("particle {} at {} is outside the domain", particle.id,
+                                 in_brackets(particle.position, model_.dimension)),
+                     "keep the source within the domain");
   }
 
   void add_bond(const ParticleData& a, const ParticleData& b, int law) {
@@ -229,6 +233,15 @@ ParticleSet make_particles(const Model& model, std::span<const ParticleSource> s
   }
   begins.push_back(maker.size());
   return maker.take();
+}
+
+SourcePlace place_of_particle(std::span<const ParticleSource> sources,
+                              std::span<const std::size_t> begins, std::size_t index) {
+  const auto next = std::upper_bound(begins.begin(), begins.end(), index);
+  const auto s = static_cast<std::size_t>(next - begins.begin()) - 1;
+  const auto* list = std::get_if<ListSource>(&sources[s].kind);
+  const std::size_t at = index - begins[s];
+  return list != nullptr && at < list->places.size() ? list->places[at] : sources[s].place;
 }
 
 }  // namespace barchan

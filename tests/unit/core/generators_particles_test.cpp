@@ -245,6 +245,29 @@ TEST(CheckParticles, NamesWhatIsWrong) {
             std::string::npos);
 }
 
+TEST(CheckParticles, SaysWhereAPairThatOverlapsComesFrom) {
+  const Model model = model_of(2);
+  ListSource list;
+  ParticleData p{1, 0, 0.1, 1, {5, 5, 0}, Vec3::Zero(), Vec3::Zero()};
+  list.particles = {p, p};
+  list.places = {{"deck.toml", 7, 3}, {"deck.toml", 9, 3}};
+  ParticleSource listed = ring(30);
+  listed.kind = list;
+  const std::vector sources{ring(30), listed};
+  std::vector<std::size_t> begins;
+  const ParticleSet set = make_particles(model, sources, begins);
+
+  const std::string message = message_of([&] {
+    check_particles(model, set,
+                    [&](std::size_t i) { return place_of_particle(sources, begins, i); });
+  });
+
+  EXPECT_NE(message.find("deck.toml:9:3: particle 32 at (5, 5) overlaps particle 31 at (5, 5) "
+                         "(line 7) by 200 %"),
+            std::string::npos)
+      << message;
+}
+
 TEST(CheckParticles, RefusesGrossOverlapsUnlessBondedOrFixed) {
   const Model model = model_of(2);
   ParticleSet set =

@@ -1,0 +1,12 @@
+#include <barchan/core/vec_text.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace barchan {
+
+std::string in_brackets(const Vec3& v, int dimension) {
+  return fmt::format("({:.6g})", fmt::join(v.data(), v.data() + dimension, ", "));
+}
+
+}  // namespace barchan
