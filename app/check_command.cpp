@@ -9,6 +9,9 @@
 #include <barchan/app/commands.hpp>
 #include <barchan/app/loaded_deck.hpp>
 #include <barchan/app/readable.hpp>
+#include <barchan/app/warning.hpp>
+#include <barchan/core/force_grain.hpp>
+#include <barchan/core/generators/check_walls.hpp>
 #include <barchan/tasks/memory_estimate.hpp>
 #include <barchan/tasks/stability.hpp>
 #include <barchan/tasks/strip_plan.hpp>
@@ -66,6 +69,14 @@ void print_particles(const LoadedDeck& loaded) {
               model.dimension == 2 ? "disks" : "spheres",
               grouped(static_cast<std::int64_t>(loaded.particles.bonds.size())).c_str(),
               table(rows, 2).c_str());
+}
+
+void print_grain(const Model& model, const ParticleSet& particles) {
+  const ForceGrain grain = force_grain(model, particles);
+  std::printf("  Forces are rounded to %s; sums are exact up to %.3g N.\n",
+              describe(grain, model, particles).c_str(), grain.most());
+  const std::string warning = coarse_grain_warning(grain, model, particles);
+  if (!warning.empty()) std::printf("  Warning: %s.\n", warning.c_str());
 }
 
 void print_walls(const Model& model) {
@@ -164,11 +175,15 @@ void check_deck(const CheckArguments& arguments) {
   const LoadedDeck loaded = load_deck(arguments.deck, arguments.settings);
   const Model& model = loaded.deck.model;
   const auto limits = step_limits(model, loaded.particles);
+  for (const std::string& note : loaded.particles.notes) print_warning(note);
   std::printf("%s%s%s\n", arguments.deck.c_str(), model.title.empty() ? "" : ": ",
               model.title.c_str());
   print_particles(loaded);
   print_contacts(loaded);
+  print_grain(model, loaded.particles);
   print_walls(model);
+  for (const std::string& what : walls_to_come_in_particles(model, loaded.particles))
+    std::printf("  Warning: %s.\n", what.c_str());
   print_stages(model);
   print_step(model, limits);
   print_strips(loaded, arguments.ranks);

@@ -41,7 +41,8 @@ struct ProbeArguments {
 
 struct ConvertArguments {
   std::string in, out;
-  int dimension = 0;  ///< 0: 2 when everything lies in the plane z = 0
+  int dimension = 0;               ///< 0: 2 when everything lies in the plane z = 0
+  std::string density = "sphere";  ///< of LAMMPS data in 2D: "sphere" or "disk"
   bool force = false;
 };
 

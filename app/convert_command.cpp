@@ -6,6 +6,7 @@
 
 #include <barchan/app/commands.hpp>
 #include <barchan/app/readable.hpp>
+#include <barchan/app/warning.hpp>
 #include <barchan/core/error.hpp>
 #include <barchan/core/io/particle_file.hpp>
 
@@ -30,35 +31,70 @@ Box box_of(const ParticleFile& file, int dimension) {
   return box;
 }
 
-void write(const ConvertArguments& arguments, const ParticleFile& file, int dimension) {
-  const std::string& out = arguments.out;
-  if (out.ends_with(".csv")) return write_particles_csv(out, file.particles);
-  if (out.ends_with(".vtp")) return write_particles_vtp(out, file.particles);
-  if (out.ends_with(".data") || out.ends_with(".lmp")) {
-    return write_particles_lammps(out, file.particles, box_of(file, dimension), dimension);
+/// The format of the file to write, found before anything is read.
+ParticleFormat format_of(const std::string& out) {
+  const auto format = particle_format(out);
+  if (!format || *format == ParticleFormat::Pvtp || is_packed(out)) {
+    throw InputError(SourcePlace{out, 0, 0}, "this ending names no format that is written",
+                     "write to .csv, .data, .lmp or .vtp");
   }
-  throw InputError(SourcePlace{out, 0, 0}, "this ending names no format",
-                   "write to .csv, .data, .lmp or .vtp");
+  return *format;
+}
+
+void refuse_existing(const ConvertArguments& arguments, const std::string& path) {
+  if (arguments.force || !std::filesystem::exists(path)) return;
+  throw InputError(SourcePlace{path, 0, 0}, "the file already exists",
+                   "give another name, or --force");
+}
+
+void write(const ConvertArguments& arguments, const ParticleFile& file, ParticleFormat format,
+           int dimension) {
+  const std::string& out = arguments.out;
+  const std::string beside = bonds_path(out);
+  if (format == ParticleFormat::LammpsData) {
+    return write_particles_lammps(
+        out, file.particles, file.bonds,
+        {box_of(file, dimension), dimension, arguments.density != "disk", file.has_bonds});
+  }
+  const bool is_csv = format == ParticleFormat::Csv;
+  if (!file.has_bonds) {
+    std::filesystem::remove(beside);  // of another file
+  } else if (is_csv) {
+    write_bonds_csv(beside, file.bonds);
+  } else {
+    write_bonds_vtp(beside, file.particles, file.bonds);
+  }
+  is_csv ? write_particles_csv(out, file.particles) : write_particles_vtp(out, file.particles);
+}
+
+std::string what_was_written(const ConvertArguments& arguments, const ParticleFile& file,
+                             ParticleFormat format, int dimension) {
+  const auto count = [](std::size_t n) { return grouped(static_cast<std::int64_t>(n)); };
+  std::string text = fmt::format("{}: {} {}", arguments.out, count(file.particles.size()),
+                                 dimension == 2 ? "disks" : "spheres");
+  if (!file.has_bonds) return text;
+  text += fmt::format(", {} bonds", count(file.bonds.size()));
+  if (format != ParticleFormat::LammpsData) text += " in " + bonds_path(arguments.out);
+  return text;
 }
 
 }  // namespace
 
 void convert(const ConvertArguments& arguments) {
-  if (!arguments.force && std::filesystem::exists(arguments.out)) {
-    throw InputError(SourcePlace{arguments.out, 0, 0}, "the file already exists",
-                     "give another name, or --force");
-  }
+  const ParticleFormat format = format_of(arguments.out);
+  refuse_existing(arguments, arguments.out);
+  if (format != ParticleFormat::LammpsData) refuse_existing(arguments, bonds_path(arguments.out));
   ParticleFile file = read_particles(arguments.in);
+  for (const std::string& note : file.notes) print_warning(file.file + ": " + note);
   const int dimension = arguments.dimension != 0 ? arguments.dimension : (is_flat(file) ? 2 : 3);
   if (dimension == 2 && !is_flat(file)) {
     throw InputError(SourcePlace{arguments.in, 0, 0}, "holds particles off the plane z = 0",
                      "leave out --dimension 2");
   }
+  if (arguments.density == "disk") file.has_sphere_density = false;
   if (dimension == 2) convert_to_areal_density(file);
-  write(arguments, file, dimension);
-  std::printf("%s: %s %s\n", arguments.out.c_str(),
-              grouped(static_cast<std::int64_t>(file.particles.size())).c_str(),
-              dimension == 2 ? "disks" : "spheres");
+  write(arguments, file, format, dimension);
+  std::printf("%s\n", what_was_written(arguments, file, format, dimension).c_str());
 }
 
 }  // namespace barchan::app

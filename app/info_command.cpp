@@ -22,6 +22,13 @@ void print(const std::string& path, const std::string& what, const Rows& rows) {
   std::printf("%s: %s\n%s", path.c_str(), what.c_str(), table(rows, 2).c_str());
 }
 
+/// What a .pvd lists, without the bonds that stand beside particles.
+std::vector<PvdEntry> times_of(const std::string& path) {
+  std::vector<PvdEntry> entries = read_pvd(path);
+  std::erase_if(entries, [](const PvdEntry& entry) { return entry.part != 0; });
+  return entries;
+}
+
 void show_folder(const std::string& path) {
   const std::string json = path + "/run.json";
   if (!fs::exists(json)) {
@@ -34,13 +41,13 @@ void show_folder(const std::string& path) {
   }
   Rows rows = run_rows(read_text_file(json), json);
   if (fs::exists(path + "/snapshots/run.pvd")) {
-    rows.push_back({"snapshots", std::to_string(read_pvd(path + "/snapshots/run.pvd").size())});
+    rows.push_back({"snapshots", std::to_string(times_of(path + "/snapshots/run.pvd").size())});
   }
   print(path, "a run's results", rows);
 }
 
 void show_pvd(const std::string& path) {
-  const auto entries = read_pvd(path);
+  const auto entries = times_of(path);
   Rows rows{{"snapshots", std::to_string(entries.size())}};
   if (!entries.empty())
     rows.push_back({"time", range(entries.front().time, entries.back().time) + " s"});
@@ -57,6 +64,11 @@ void add_instant(const std::string& path, Rows& rows) {
   }
   const VtpPiece read = read_vtp(piece);
   rows.push_back({"time", fmt::format("{:.6g} s, step {}", read.time, grouped(read.step))});
+}
+
+const char* kind_in_words(ParticleFormat format) {
+  if (format == ParticleFormat::LammpsData) return "a LAMMPS data file";
+  return format == ParticleFormat::Csv ? "a table of particles" : "a snapshot";
 }
 
 void show_particles(const std::string& path) {
@@ -80,11 +92,10 @@ void show_particles(const std::string& path) {
   for (int c = 0; c < 3; ++c)
     rows.push_back({std::string(1, "xyz"[c]), range(lo[c], hi[c]) + " m"});
   rows.push_back({"speed", fmt::format("at most {:.4g} m/s", speed)});
-  const char* what = path.ends_with("vtp") ? "a snapshot"
-                                           : (path.ends_with(".data") || path.ends_with(".lmp")
-                                                  ? "a LAMMPS data file"
-                                                  : "a table of particles");
-  print(path, what, rows);
+  if (file.has_bonds)
+    rows.push_back({"bonds", grouped(static_cast<std::int64_t>(file.bonds.size()))});
+  for (const std::string& note : file.notes) rows.push_back({"note", note});
+  print(path, kind_in_words(*particle_format(path)), rows);
 }
 
 bool show_series(const std::string& path) {
@@ -120,11 +131,10 @@ void show_info(const std::string& path) {
   if (path.ends_with(".json"))
     return print(path, "a run in numbers", run_rows(read_text_file(path), path));
   if (path.ends_with(".csv") && show_series(path)) return;
-  for (const char* ending : {".csv", ".data", ".lmp", ".vtp", ".pvtp"}) {
-    if (path.ends_with(ending)) return show_particles(path);
-  }
-  throw InputError(SourcePlace{path, 0, 0}, "barchan does not know this kind of file",
-                   "give a run's folder, .toml, .csv, .data, .lmp, .vtp, .pvtp, .pvd or run.json");
+  if (particle_format(path)) return show_particles(path);
+  throw InputError(
+      SourcePlace{path, 0, 0}, "barchan does not know this kind of file",
+      "give a run's folder, .toml, .csv, .tsv, .data, .lmp, .vtp, .pvtp, .pvd or run.json");
 }
 
 }  // namespace barchan::app

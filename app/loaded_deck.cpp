@@ -1,5 +1,6 @@
 #include <barchan/app/loaded_deck.hpp>
 
+#include <barchan/core/generators/check_walls.hpp>
 #include <barchan/core/generators/make_particles.hpp>
 
 namespace barchan::app {
@@ -11,6 +12,8 @@ LoadedDeck load_deck(const std::string& path, const std::vector<std::string>& se
   loaded.deck = read_deck(path, overrides);
   loaded.particles = make_particles(loaded.deck.model, loaded.deck.sources, loaded.begins);
   check_particles(loaded.deck.model, loaded.particles);
+  check_walls(loaded.deck.model, loaded.particles);
+  loaded.deck.model.sources = make_records(loaded.deck.sources, loaded.particles, loaded.begins);
   return loaded;
 }
 

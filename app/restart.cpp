@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include <barchan/app/verdict.hpp>
+#include <barchan/app/warning.hpp>
 #include <barchan/core/error.hpp>
 
 namespace fs = std::filesystem;
@@ -40,8 +41,9 @@ RestartPoint restart_point(const Communicator& world, const RunArguments& argume
     point.checkpoint =
         find_checkpoint(world, is_auto ? folder.file("checkpoints") : arguments.restart);
     if (!point.checkpoint && !is_auto) {
-      throw InputError(SourcePlace{arguments.restart, 0, 0}, "there is no checkpoint",
-                       "give a checkpoint, a folder of them, or 'auto'");
+      throw InputError(
+          SourcePlace{arguments.restart, 0, 0}, "there is no checkpoint",
+          "give a checkpoint or a folder of them; without --restart a run begins at step 0");
     }
   }
   if (point.checkpoint) {
@@ -58,8 +60,7 @@ void print_warnings(Simulation& simulation, RunResults& results, Progress& progr
   for (const std::string& warning : warnings) results.log().add("warning: " + warning);
   for (std::string& warning : results.log().take_warnings()) warnings.push_back(std::move(warning));
   if (!warnings.empty()) progress.clear();
-  for (const std::string& warning : warnings)
-    std::fprintf(stderr, "barchan: warning: %s\n", warning.c_str());
+  for (const std::string& warning : warnings) print_warning(warning);
 }
 
 }  // namespace barchan::app

@@ -12,15 +12,13 @@ namespace barchan {
 /// One side of a lane: the cut, the owned rows along it, and the pairs across it.
 struct Band {
   bool exists = false;
-  bool ghosts_first = false;  ///< ghosts precede the owned rows in canonical order
   bool returns = false;  ///< published scheme: the right-hand side computes the pairs of this cut
   Rows rows;             ///< owned rows that are somebody's ghosts
   CellIndex ghost_cells;
-  Planes planes;  ///< of the higher ones of the pairs across
-  PairList across;
-  std::vector<PairBlock> blocks;        ///< of `across`
-  std::vector<PairBlock> inner_blocks;  ///< of the pairs within the band that wait for its ghosts
-  double travel = 0.0;  ///< bound of how far ghosts have come since the last rebuild [m]
+  Planes planes;                  ///< of the ghosts
+  PairList across;                ///< first particles owned, second ones ghosts
+  std::vector<PairBlock> blocks;  ///< of `across`
+  double travel = 0.0;            ///< bound of how far ghosts have come since the last rebuild [m]
 };
 
 }  // namespace barchan

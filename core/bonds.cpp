@@ -33,6 +33,35 @@ BondSection bond_section(const BondLaw& law, double length, double radius_a, dou
 }
 
 template <int Dim>
+Bond<Dim> bond_of(const BondData& data, double at_start) {
+  const double length = data.length > 0.0 ? data.length : at_start;
+  const Vec3 &s = data.shear, &m = data.bending;
+  if constexpr (Dim == 2)
+    return {data.id_a, data.id_b, data.law, length, {s[0], m[2]}};
+  else
+    return {data.id_a,
+            data.id_b,
+            data.law,
+            length,
+            {s[0], s[1], s[2], m[0], m[1], m[2], data.twisting}};
+}
+
+template <int Dim>
+BondData data_of(const Bond<Dim>& bond) {
+  BondData data{bond.id_a, bond.id_b, bond.law, bond.length};
+  const auto& state = bond.state;
+  if constexpr (Dim == 2) {
+    data.shear[0] = state[0];
+    data.bending[2] = state[1];
+  } else {
+    data.shear = Vec3(state[0], state[1], state[2]);
+    data.bending = Vec3(state[3], state[4], state[5]);
+    data.twisting = state[6];
+  }
+  return data;
+}
+
+template <int Dim>
 void BondSet<Dim>::add(const Bond<Dim>& bond, bool is_current) {
   const auto [it, is_new] = known_.try_emplace({bond.id_a, bond.id_b}, bonds_.size());
   if (is_new) {
@@ -87,7 +116,10 @@ void BondSet<Dim>::resolve(ParticleStore<Dim>& store) {
     if (store.is_owned(j)) incidences_.push_back({j, i, index, true});
   }
   std::sort(incidences_.begin(), incidences_.end(), [&](const Incidence& p, const Incidence& q) {
-    return p.row != q.row ? p.row < q.row : store.precedes(p.partner, q.partner);
+    const auto id = [&](const Incidence& i) {
+      return store.id[static_cast<std::size_t>(i.partner)];
+    };
+    return p.row != q.row ? p.row < q.row : id(p) < id(q);
   });
   force_.assign(bonds_.size(), {});
   broken_.assign(bonds_.size(), 0);
@@ -175,6 +207,10 @@ std::size_t BondSet<Dim>::bytes() const {
 
 template BondSection bond_section<2>(const BondLaw&, double, double, double);
 template BondSection bond_section<3>(const BondLaw&, double, double, double);
+template Bond<2> bond_of(const BondData&, double);
+template Bond<3> bond_of(const BondData&, double);
+template BondData data_of(const Bond<2>&);
+template BondData data_of(const Bond<3>&);
 template class BondSet<2>;
 template class BondSet<3>;
 

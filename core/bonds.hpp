@@ -27,6 +27,12 @@ struct Bond {
   std::array<double, kState> state{};
 };
 
+/// A bond of a particle set, and back. @param at_start  its length where the data leave it open [m]
+template <int Dim>
+[[nodiscard]] Bond<Dim> bond_of(const BondData& data, double at_start);
+template <int Dim>
+[[nodiscard]] BondData data_of(const Bond<Dim>& bond);
+
 /// The bonds of one lane: every bond with an owned end. A bond across a cut lives on both sides and
 /// stays equal there.
 ///
@@ -58,7 +64,7 @@ class BondSet {
                                         std::span<const BondLaw> laws, const PeriodicBox& box,
                                         double dt);
 
-  /// Adds the kept forces to rows [begin, end), each row's in canonical order of the partner.
+  /// Adds the kept forces to rows [begin, end), each row's in order of the partner's id.
   void add_to_rows(ParticleStore<Dim>& store, std::int32_t begin, std::int32_t end) const;
 
   // The published exchange: one side of a cut computes, the other takes the forces. kExported
@@ -107,7 +113,7 @@ class BondSet {
   std::vector<std::pair<std::int32_t, std::int32_t>> ends_;
   std::vector<char> broken_;
   std::array<std::int32_t, kNumGroups + 1> group_begin_{};
-  std::vector<Incidence> incidences_;  ///< sorted by row, then partner
+  std::vector<Incidence> incidences_;  ///< sorted by row, then the partner's id
   std::vector<std::array<Record, 2>> force_;
   std::vector<std::int32_t> just_broken_;
   std::int64_t num_broken_ = 0;

@@ -6,15 +6,18 @@
 namespace barchan {
 
 template <int Dim>
-void Planes::write(const ParticleStore<Dim>& store, Rows rows) {
+void Planes::write(const Grid<Dim>& grid, const ParticleStore<Dim>& store, Rows rows) {
   first = rows.begin;
   const auto n = static_cast<std::size_t>(rows.end - rows.begin);
   for (int c = 0; c < Dim; ++c) resize_with_room(axis[c], n + kBatch);
   resize_with_room(radius, n + kBatch);
   for (std::size_t q = 0; q < n; ++q) {
-    const double* x = store.x(first + static_cast<std::int32_t>(q));
+    const auto row = first + static_cast<std::int32_t>(q);
+    double x[Dim];
+    std::copy_n(store.x(row), Dim, x);
+    grid.wrap(x);
     for (int c = 0; c < Dim; ++c) axis[c][q] = x[c];
-    radius[q] = x[Layout<Dim>::kRadius];
+    radius[q] = store.radius(row);
   }
 }
 
@@ -38,7 +41,8 @@ ContactSearch<Dim>::ContactSearch(const Grid<Dim>& grid, const ParticleStore<Dim
 template <int Dim>
 void ContactSearch<Dim>::scan(SearchJob& job, std::int32_t i, std::span<const Rows> partners,
                               PairList& list, std::int64_t& size) const {
-  for (int c = 0; c < Dim; ++c) job.at[c] = store_.x(i)[c];
+  std::copy_n(store_.x(i), Dim, job.at);
+  grid_.wrap(job.at);
   job.reach = store_.radius(i) + rule_.skin;
   std::int64_t most = size + kBatch;
   for (const Rows rows : partners) most += rows.end - rows.begin;
@@ -105,19 +109,19 @@ void ContactSearch<Dim>::owned(const CellIndex& cells, Rows rows, PairList& list
 }
 
 template <int Dim>
-void ContactSearch<Dim>::across(const CellIndex& lower, const CellIndex& higher,
-                                int lower_to_higher, PairList& list) const {
+void ContactSearch<Dim>::across(const CellIndex& own, const CellIndex& ghosts, int own_to_ghosts,
+                                PairList& list) const {
   const bool all_pairs = rule_.kind == ContactSearchKind::AllPairs;
   std::int64_t last_key = -1, size = list.size();
   Neighbourhood<Dim> around;
   around.count = 1;
-  around.ranges[0] = {higher.start.front(), higher.start.back()};
+  around.ranges[0] = {ghosts.start.front(), ghosts.start.back()};
   SearchJob job = job_;
   job.wraps = grid_.box().any();
-  for (std::int32_t i = lower.start.front(); i < lower.start.back(); ++i) {
+  for (std::int32_t i = own.start.front(); i < own.start.back(); ++i) {
     const std::int64_t key = store_.key[static_cast<std::size_t>(i)];
     if (!all_pairs && key != last_key) {
-      around.collect(grid_, higher, key, lower_to_higher, lower_to_higher, -1);
+      around.collect(grid_, ghosts, key, own_to_ghosts, own_to_ghosts, -1);
       job.wraps = around.wraps;
       last_key = key;
     }
@@ -127,8 +131,8 @@ void ContactSearch<Dim>::across(const CellIndex& lower, const CellIndex& higher,
   list.shorten(size);
 }
 
-template void Planes::write(const ParticleStore<2>&, Rows);
-template void Planes::write(const ParticleStore<3>&, Rows);
+template void Planes::write(const Grid<2>&, const ParticleStore<2>&, Rows);
+template void Planes::write(const Grid<3>&, const ParticleStore<3>&, Rows);
 template class ContactSearch<2>;
 template class ContactSearch<3>;
 

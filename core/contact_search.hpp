@@ -13,13 +13,13 @@
 
 namespace barchan {
 
-/// Positions and radii of some rows, axis by axis, as the search reads them.
+/// Positions, within the box, and radii of some rows, axis by axis, as the search reads them.
 struct Planes {
   AlignedVector<double> axis[3], radius;  ///< a batch longer than the rows
   std::int32_t first = 0;                 ///< row of the first value
 
   template <int Dim>
-  void write(const ParticleStore<Dim>& store, Rows rows);
+  void write(const Grid<Dim>& grid, const ParticleStore<Dim>& store, Rows rows);
   [[nodiscard]] std::size_t bytes() const;
 };
 
@@ -32,7 +32,7 @@ struct SearchRule {
   SearchKernel kernel = nullptr;
 };
 
-/// Candidates: pairs closer than r_i + r_j + skin, lower particle first, sorted by both indices.
+/// Candidates: pairs closer than r_i + r_j + skin, lower row first, sorted by both rows.
 /// Pairs of two fixed particles are left out; a bonded pair gets the null law.
 ///
 /// `AllPairs` looks at every pair and is the reference; `Cells` finds the same pairs in linear
@@ -49,10 +49,9 @@ class ContactSearch {
   void owned(const CellIndex& cells, Rows rows, PairList& list,
              std::vector<std::int64_t>& row_begin) const;
 
-  /// Appends the candidates across a cut. @param lower, higher  one slab each, one of them of
-  /// ghosts
-  /// @param lower_to_higher  slab offset as the grid counts it, +1 or −1 (periodic: around the end)
-  void across(const CellIndex& lower, const CellIndex& higher, int lower_to_higher,
+  /// Appends the candidates across a cut, owned ones first. @param own, ghosts  one slab each
+  /// @param own_to_ghosts  slab offset as the grid counts it, +1 or −1 (periodic: around the end)
+  void across(const CellIndex& own, const CellIndex& ghosts, int own_to_ghosts,
               PairList& list) const;
 
  private:

@@ -51,6 +51,8 @@ std::uint64_t particle_set_hash(const ParticleSet& set) {
     out.put(b.id_a);
     out.put(b.id_b);
     out.put(b.law);
+    for (const double value : {b.length, b.twisting}) out.put(value);
+    for (const Vec3* v : {&b.shear, &b.bending}) out.put_all(std::span<const double>(v->data(), 3));
     take();
   }
   return hash;

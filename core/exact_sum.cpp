@@ -6,7 +6,7 @@
 namespace barchan {
 namespace {
 
-constexpr int kLowest = -288;  // weight of digit 0 is 2^kLowest
+constexpr int kLowest = -1088;  // weight of digit 0 is 2^kLowest
 constexpr int kNumeric = ExactSum::kDigits - 1;
 
 }  // namespace

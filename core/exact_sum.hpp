@@ -6,14 +6,14 @@
 namespace barchan {
 
 /// A sum of doubles that does not depend on their order: a fixed-point number of 32-bit digits from
-/// 2^-288 to 2^320.
+/// 2^-1088 to 2^320.
 ///
 /// Every digit is an int64, so partial sums of up to 2^30 terms may be added digit by digit in any
-/// order, on any rank (a sum of integers). Bits below 2^-288 are cut off term by term. Non-finite
-/// terms make the sum NaN.
+/// order, on any rank (a sum of integers). No bit of a double lies below, so units may be as small
+/// as they like. Non-finite terms, and those from 2^300 on, make the sum NaN.
 class ExactSum {
  public:
-  static constexpr int kDigits = 20;
+  static constexpr int kDigits = 45;
   using Digits = std::array<std::int64_t, kDigits>;
 
   void add(double term);

@@ -6,12 +6,23 @@
 
 namespace barchan {
 
+PeriodicBox periodic_box(const Domain& domain, int dimension) {
+  PeriodicBox box;
+  for (int a = 0; a < dimension; ++a) {
+    if (!domain.periodic[static_cast<std::size_t>(a)]) continue;
+    box.length[a] = domain.hi[a] - domain.lo[a];
+    box.inverse[a] = 1.0 / box.length[a];
+  }
+  return box;
+}
+
 template <int Dim>
 Grid<Dim>::Grid(const Domain& domain, double cutoff, std::int64_t num_particles) {
   axis_[0] = domain.strip_axis;
   for (int a = 0, k = 1; a < Dim; ++a) {
     if (a != domain.strip_axis) axis_[static_cast<std::size_t>(k++)] = a;
   }
+  box_ = periodic_box(domain, Dim);
   double total = 1.0;
   for (int k = 0; k < Dim; ++k) {
     const int a = axis(k);
@@ -28,8 +39,6 @@ Grid<Dim>::Grid(const Domain& domain, double cutoff, std::int64_t num_particles)
                            " m long, shorter than twice the reach of a contact",
                        "make it at least " + std::to_string(2.0 * cutoff) + " m");
     }
-    box_.length[a] = length;
-    box_.inverse[a] = 1.0 / length;
   }
   const double most = 8.0 * static_cast<double>(num_particles) + 4096.0;
   while (total > most) {  // an almost empty domain: larger cells

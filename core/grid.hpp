@@ -23,12 +23,14 @@ double distance2(const PeriodicBox& box, const double* p, const double* q) {
   return d2;
 }
 
-/// The one global grid of a run: it orders the particles, and cuts between strips lie on its faces.
+/// @param dimension  axes beyond it do not wrap
+[[nodiscard]] PeriodicBox periodic_box(const Domain& domain, int dimension);
+
+/// The one grid of a run: lists are built by its cells, and cuts between strips lie on its faces.
 ///
 /// Cells are at least `cutoff` wide, so a particle's partners are in its own cell or in a
 /// neighbouring one. A cell's key grows fastest along the last axis and slowest along the strip
-/// axis; a slab is the layer of cells with one strip coordinate. Particles ordered by (key, id) are
-/// in canonical order.
+/// axis; a slab is the layer of cells with one strip coordinate.
 template <int Dim>
 class Grid {
  public:
@@ -47,12 +49,26 @@ class Grid {
   [[nodiscard]] const PeriodicBox& box() const { return box_; }
 
   /// Grid coordinate along the k-th axis in sorting order (0 = strip axis); outside the domain: the
-  /// last cell.
+  /// last cell, or where the position is after going around.
   [[nodiscard]] int coordinate(const double* x, int k) const {
     const auto a = static_cast<std::size_t>(k);
-    const double c = (x[axis_[a]] - lo_[a]) * inverse_[a];
+    double c = (x[axis_[a]] - lo_[a]) * inverse_[a];
+    if (periodic_[a] && !(c >= 0.0 && c < cells_[a])) c -= cells_[a] * std::floor(c / cells_[a]);
     const int top = cells_[a] - 1;
     return c >= top ? top : (c > 0.0 ? static_cast<int>(c) : 0);
+  }
+  /// Position along the strip axis, within the box where that wraps [m].
+  [[nodiscard]] double along_strips(const double* x) const {
+    double wrapped[Dim];
+    std::copy_n(x, Dim, wrapped);
+    wrap(wrapped);
+    return wrapped[axis_[0]];
+  }
+  /// The slab of such a position.
+  [[nodiscard]] int slab_at(double along_strips) const {
+    double x[Dim] = {};
+    x[axis_[0]] = along_strips;
+    return coordinate(x, 0);
   }
   [[nodiscard]] std::int64_t key(const double* x) const {
     std::int64_t key = coordinate(x, 0);

@@ -30,29 +30,29 @@ struct CheckpointShare;
 ///
 /// The steady step (`E precedes F` means E happens before F):
 ///
+///   press_plates       precedes run_chunk(0), where there are loaded plates
 ///   run_chunk(c)       precedes run_chunk(c + 1)
 ///   run_chunk(0)       precedes finish_band(Left)
 ///   the last chunk     precedes finish_band(Right)
 ///   unpack_halo(side)  precedes finish_band(side)
 ///   finish_band(side)  precedes pack_halo(side) of the next step
 ///
-/// Rows of a band whose ghosts come first in the canonical order wait for them. Their pairs with
-/// rows that do not wait are computed with the chunks, kept (`HeldLow`, `HeldHigh`), and summed by
-/// finish_band after the ghosts' share; pairs within such a band (`InnerLow`, `InnerHigh`) are
-/// computed there. All other rows are summed and advanced in place, chunk by chunk.
+/// Forces of pairs are rounded to the grain, so that sums have no order (force_grain.hpp). Rows
+/// away from the cuts are advanced in place, chunk by chunk; those of a band when the pairs with
+/// its ghosts are in.
 template <int Dim>
 class Lane {
  public:
   using Store = ParticleStore<Dim>;
   using L = Layout<Dim>;
-  enum ListName { HeldLow, Owned, HeldHigh, InnerLow, InnerHigh, kNumLists };
-  static constexpr std::array<ListName, kNumLists> kLists{HeldLow, Owned, HeldHigh, InnerLow,
-                                                          InnerHigh};
   enum Side { Left = 0, Right = 1 };
 
   explicit Lane(World<Dim>& world) : world_(&world) {}
 
   // ---- the step (lane_step.cpp)
+  /// Contacts with loaded plates, before the step's other forces: their forces on the plates are
+  /// added to `sums`, one a wall. Needs owned rows only.
+  void press_plates(const StepFrame& frame, std::span<WallSums> sums);
   void begin_step(const StepFrame& frame);
   [[nodiscard]] int num_chunks() const { return static_cast<int>(chunks_.size()) - 1; }
   void run_chunk(int chunk);
@@ -62,15 +62,15 @@ class Lane {
   void pack_halo(Side side, std::span<std::byte> message) const;
   // The published scheme (lane_results.cpp): the lane right of a cut computes, the other one takes
   // the results.
-  /// Upper bound of a results message until the next rebuild.
-  [[nodiscard]] std::size_t max_results_bytes(Side side) const;
-  /// Forces of the pairs and bonds of the left cut, after finish_band(Left).
-  void results(std::vector<double>& out) const;
+  /// Of a results message until the next rebuild.
+  [[nodiscard]] std::size_t results_bytes(Side side) const;
+  /// Forces of the left cut's pairs on its ghosts, and of its bonds, after finish_band(Left).
+  void results(std::vector<double>& out);
   /// Instead of finish_band(Right). @param results  what results() gave on the other side
   void finish_right_band(std::span<const double> results);
 
   // ---- particles that left the domain (lane_watch.cpp), between steps
-  /// Owned particles out of the domain, in canonical order.
+  /// Owned particles out of the domain.
   [[nodiscard]] std::vector<Departure> outside(std::int64_t step) const;
   /// These particles, of any lane, go in the begin_rebuild that follows, with their contacts and
   /// bonds. @param ids  ascending. @return how many of those this lane counts
@@ -79,7 +79,11 @@ class Lane {
   // ---- what a run that goes wrong says (lane_watch.cpp), between steps
   /// A particle moved farther than half the skin in the last step, or is not finite.
   [[nodiscard]] bool is_fast() const { return speeds_.is_beyond; }
-  /// The first one that did, in canonical order. @pre is_fast()
+  /// A particle that bore more in the last step than can be summed exactly.
+  [[nodiscard]] const Overload& overload() const { return speeds_.overload; }
+  /// The last step went wrong: it is fast, or there is an overload.
+  [[nodiscard]] bool must_stop() const { return is_fast() || overload().id != 0; }
+  /// Of those that did the one with the lowest id. @pre is_fast()
   [[nodiscard]] std::int32_t first_fast_row() const;
   /// The fastest one; one that is not finite before all others. -1: there is none
   [[nodiscard]] std::int32_t fastest_row() const;
@@ -106,7 +110,7 @@ class Lane {
   void begin_rebuild(int slab_begin, int slab_end, std::vector<std::byte>& to_left,
                      std::vector<std::byte>& to_right);
   void absorb(std::span<const std::byte> message);  ///< arrivals
-  void order();                                     ///< canonical order
+  void order();                                     ///< by cells
   void pack_ghosts(Side side, std::vector<std::byte>& message) const;
   void list_owned();
   void take_ghosts(std::span<const std::byte> left, std::span<const std::byte> right);
@@ -117,21 +121,22 @@ class Lane {
   // ---- checkpoints (lane_checkpoint.cpp)
   /// Everything that the next step depends on, between steps. Reuses the memory of `share`.
   void save(CheckpointShare& share);
-  /// Instead of seed: owns the particles of a checked share as they were at their last rebuild, and
-  /// queues the history of contacts, walls and bonds that have an end among them. order() …
-  /// restore_history() follow, then put_back().
+  /// Instead of seed: owns the particles of a checked share, and queues the history of contacts,
+  /// walls and bonds that have an end among them. order() … restore_history() follow.
   /// @pre they lie in the slabs. Errors: RunError for an id that comes twice
   void restore(int slab_begin, int slab_end, const CheckpointShare& share);
-  /// Particles where they were when they were saved, and as fast; ghosts must be refreshed.
-  void put_back(const CheckpointShare& share);
 
   // ---- between steps, ghosts up to date (lane_measure.cpp)
   [[nodiscard]] Measures measure(const Vec3& gravity);
   [[nodiscard]] Travel travel() const;  ///< since the last rebuild; needs no ghosts
+  /// The largest id of an owned particle out of the domain; 0: none is.
+  [[nodiscard]] std::int64_t last_outside() const;
   /// Lists before these were used with a wall that had moved so far since they were built; the next
-  /// travel() tells when that was too far. After a rebuild.
-  void note_travel(double distance2) { last_distance2_ = std::max(last_distance2_, distance2); }
+  /// travel() tells when that was too far. @param share  see outrun_share. After a rebuild.
+  void note_outrun(double share) { outrun_ = std::max(outrun_, share); }
   [[nodiscard]] std::uint64_t digest() const;
+  /// Is the bond whole, and is this the one lane of two that counts it?
+  [[nodiscard]] bool counts_bond(std::int32_t bond) const;
 
   // ---- what others see
   Store& store() { return store_; }
@@ -140,15 +145,15 @@ class Lane {
   [[nodiscard]] const BondSet<Dim>& bonds() const { return bonds_; }
   WallContacts<Dim>& wall_contacts() { return walls_; }
   [[nodiscard]] const WallContacts<Dim>& wall_contacts() const { return walls_; }
-  /// Force of the last step on walls that move, and their work since the start.
+  /// Of all walls the work since the start.
   std::vector<WallSums>& wall_sums() { return wall_sums_; }
   [[nodiscard]] std::vector<WallSums> measure_walls() const;
   Band& band(Side side) { return bands_[side]; }
   [[nodiscard]] const Band& band(Side side) const { return bands_[side]; }
   /// Pairs and history; packed history is put back in its place first (unpack_history).
-  PairList& list(ListName name) {
+  PairList& pairs() {
     unpack_history();
-    return lists_[name];
+    return pairs_;
   }
   /// Brings the springs of touching pairs back to their candidates' places. Cheap when nothing is
   /// packed.
@@ -173,7 +178,6 @@ class Lane {
 
  private:
   struct Block : PairBlock {
-    int list = 0;
     std::array<Rows, 2> to_come;  ///< rows to ask for (lane_prefetch.cpp)
     std::int32_t final_row = 0;   ///< rows before this one are complete after the block
     bool has_extras = false;      ///< bonds, walls or external forces among them
@@ -191,43 +195,36 @@ class Lane {
     return !removed_.empty() && std::binary_search(removed_.begin(), removed_.end(),
                                                    store_.id[static_cast<std::size_t>(row)]);
   }
-  [[nodiscard]] bool counts_bond(std::int32_t bond) const;
   /// Whether to lose one of these now.
   bool loses(Loss what) { return loss_ == what && std::exchange(loss_, Loss::Nothing) == what; }
   [[nodiscard]] bool computes_bond(std::int32_t bond) const;
   [[nodiscard]] std::pair<bool, bool> bond_leaves(std::int32_t bond) const;
   PairJob job(PairList& list) const;
   void run_block(Block& block);
-  void run_with_prefetch(PairList& list, const Block& block, const PairJob& pairs) const;
+  void run_with_prefetch(const Block& block, const PairJob& pairs) const;
   void prefetch(Rows rows) const;
-  void run_pairs(PairList& list, PairBlock& block, double travel);
-  void run_kernel(const PairList& list, const PairJob& pairs) const;
   /// The pairs of a block that are worked on.
   [[nodiscard]] PairJob block_job(PairList& list, PairBlock& block, double travel);
   void pick_touching(PairList& list, PairBlock& block, PairJob& pairs, double travel);
   [[nodiscard]] double packing_margin() const;  ///< [m]
-  /// Of a component of velocity: half the skin in a step [m/s].
-  [[nodiscard]] double most_speed() const { return 0.5 * world_->skin / world_->dt; }
+  /// Of a component of velocity [m/s].
+  [[nodiscard]] double most_speed() const { return world_->most_travel / world_->dt; }
   void pack(PairList& list, PairBlock& block, const std::uint8_t* masks);
   [[nodiscard]] bool packs() const {
     return world_->kernels.narrow != nullptr && world_->search == ContactSearchKind::Cells;
   }
   void finish_rows(std::int32_t begin, std::int32_t end, bool has_extras);
-  void finish_sums(Side side);
-  void replay(Rows rows);
+  void wrap_rows(Rows rows);
+  [[nodiscard]] typename WallContacts<Dim>::Frame wall_frame(double dt) const {
+    return {world_->wall_view(), &world_->laws, dt};
+  }
   void compute_bonds(typename BondSet<Dim>::Group group);
   void unbind(std::int32_t bond);
   void research_owned();
   void research_across(Side side);
 
-  [[nodiscard]] bool waits(Side side) const {
-    return bands_[side].exists && bands_[side].ghosts_first;
-  }
-  [[nodiscard]] ListName list_of(std::int32_t low, std::int32_t high) const;
-  void part(ListName name, std::int64_t from);
   void cut_blocks();
   void plan_prefetch();
-  void redirect(PairList& list) const;
   [[nodiscard]] SearchRule search_rule() const;
   void find_owned();
   void list_across(Side side);
@@ -245,15 +242,16 @@ class Lane {
   /// @param number  of every row that leaves, its place among the leavers
   void collect_history(std::array<Migration<Dim>, 2>& leaving,
                        std::span<const std::int32_t> number);
-  void keep_staying(const PairList& list, const PairBlock& block,
-                    std::array<Migration<Dim>, 2>& leaving, std::span<const std::int32_t> number);
+  void keep_staying(const PairBlock& block, std::array<Migration<Dim>, 2>& leaving,
+                    std::span<const std::int32_t> number);
   void loosen(const PairList& list, std::int64_t k, std::array<std::int32_t, 2> ends, bool counts,
               std::array<Migration<Dim>, 2>& leaving, std::span<const std::int32_t> number);
 
   World<Dim>* world_;
   StepFrame frame_;
+  bool wraps_now_ = false;  ///< after this step
   Store store_;
-  std::array<PairList, kNumLists> lists_;
+  PairList pairs_;  ///< of two owned particles
   std::array<Band, 2> bands_;
   BondSet<Dim> bonds_;
   BondedPairs bonded_;
@@ -270,8 +268,9 @@ class Lane {
   std::int64_t steps_since_start_ = 0;
   SearchSeconds search_seconds_;
   int slab_begin_ = 0, slab_end_ = 0;
-  double last_distance2_ = 0.0;              ///< of the last step with the lists before these
-  RowSpeeds speeds_;                         ///< of the rows of this step
+  double lists_skin_ = 0.0;  ///< [m]
+  double outrun_ = 0.0;      ///< of the last step with the lists before these, see outrun_share
+  RowSpeeds speeds_;         ///< of the rows of this step
   double step_travel_ = 0.0, travel_ = 0.0;  ///< bounds: of the last step, since the lists were cut
 
   /// A contact's spring while lists are made anew, by the rows that it had before.

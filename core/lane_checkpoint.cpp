@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <bit>
 #include <unordered_map>
 
 #include <barchan/core/checkpoint/share.hpp>
@@ -12,13 +11,6 @@
 namespace barchan {
 namespace {
 
-/// By bits: a spring of -0 is not nothing, for the next step may add to it.
-bool has_bits(const double* values, int count, std::ptrdiff_t stride) {
-  std::uint64_t bits = 0;
-  for (int c = 0; c < count; ++c) bits |= std::bit_cast<std::uint64_t>(values[c * stride]);
-  return bits != 0;
-}
-
 template <int Dim>
 void save_particles(const ParticleStore<Dim>& store, CheckpointShare& share) {
   using L = Layout<Dim>;
@@ -26,7 +18,6 @@ void save_particles(const ParticleStore<Dim>& store, CheckpointShare& share) {
   share.ids.assign(store.id.begin(), store.id.begin() + store.num_owned);
   share.types.assign(store.type.begin(), store.type.begin() + store.num_owned);
   share.flags.assign(store.flags.begin(), store.flags.begin() + store.num_owned);
-  share.references.assign(store.reference.begin(), store.reference.end());
   share.externals.assign(store.external.begin(), store.external.end());
   share.positions.resize(n * Dim);
   share.velocities.resize(n * Dim);
@@ -48,7 +39,7 @@ void save_contacts(const ParticleStore<Dim>& store, const PairList& list, Checkp
   constexpr int kSprings = Layout<Dim>::kSprings;
   for (std::int64_t k = 0; k < list.size(); ++k) {
     const double* spring = list.template springs<Dim>(k);
-    if (!has_bits(spring, kSprings, kBatch)) continue;
+    if (!list.template has_spring<Dim>(k)) continue;
     for (const std::int32_t end :
          {list.i[static_cast<std::size_t>(k)], list.j[static_cast<std::size_t>(k)]}) {
       share.contact_ids.push_back(store.id[static_cast<std::size_t>(end)]);
@@ -64,13 +55,15 @@ void Lane<Dim>::save(CheckpointShare& share) {
   share.clear();
   unpack_history();
   save_particles(store_, share);
-  for (const PairList& list : lists_) save_contacts(store_, list, share);
+  save_contacts(store_, pairs_, share);
   if (bands_[Left].exists) save_contacts(store_, bands_[Left].across, share);
 
   for (const WallContact<Dim>& c : walls_.list()) {
-    if (!has_bits(c.spring, L::kSprings, 1)) continue;
+    if (!has_spring(c)) continue;
     share.wall_contact_ids.push_back(store_.id[static_cast<std::size_t>(c.row)]);
     share.wall_contact_walls.push_back(c.wall);
+    share.wall_contact_images.insert(share.wall_contact_images.end(), c.image.begin(),
+                                     c.image.end());
     share.wall_contact_springs.insert(share.wall_contact_springs.end(), c.spring,
                                       c.spring + L::kSprings);
   }
@@ -84,7 +77,7 @@ void Lane<Dim>::save(CheckpointShare& share) {
     share.bond_lengths.push_back(bond.length);
     share.bond_states.insert(share.bond_states.end(), bond.state.begin(), bond.state.end());
   }
-  share.outruns.push_back(last_distance2_);
+  share.outruns.push_back(std::max(outrun_, outrun_share(distance2_of_last_step(), lists_skin_)));
   share.totals.push_back(bonds_.num_broken());
   for (std::size_t w = 0; w < world_->walls.size(); ++w) {
     if (w < wall_sums_.size()) wall_sums_[w].work.carry();
@@ -107,10 +100,12 @@ void Lane<Dim>::restore(int slab_begin, int slab_end, const CheckpointShare& sha
     const auto at = static_cast<std::size_t>(i);
     double* x = store_.x(i);
     std::fill_n(x, 8, 0.0);
-    std::copy_n(share.references.data() + at * Dim, Dim, x);
+    std::copy_n(share.positions.data() + at * Dim, Dim, x);
+    std::copy_n(share.velocities.data() + at * Dim, Dim, store_.v(i));
     x[L::kRadius] = share.radii[at];
     x[L::kInverseMass] = share.inverse_masses[at];
     if constexpr (Dim == 3) std::fill_n(store_.u(i), 4, 0.0);
+    std::copy_n(share.surface_speeds.data() + at * kSpins<Dim>, int{kSpins<Dim>}, store_.u(i));
     store_.id[at] = share.ids[at];
     store_.key[at] = world_->grid.key(x);
     store_.type[at] = share.types[at];
@@ -120,8 +115,7 @@ void Lane<Dim>::restore(int slab_begin, int slab_end, const CheckpointShare& sha
                      " twice: take another one");
     }
   }
-  for (const double distance2 : share.outruns)
-    last_distance2_ = std::max(last_distance2_, distance2);
+  for (const double outrun : share.outruns) outrun_ = std::max(outrun_, outrun);
   store_.external.assign(share.externals.begin(), share.externals.end());
   queue_links(share, row_of);
 }
@@ -146,7 +140,9 @@ void Lane<Dim>::queue_links(const CheckpointShare& share,
   for (std::size_t k = 0; k < share.wall_contact_ids.size(); ++k) {
     const auto row = row_of.find(share.wall_contact_ids[k]);
     if (row == row_of.end()) continue;
-    WallContact<Dim> c{row->second, share.wall_contact_walls[k], {}};
+    WallContact<Dim> c{row->second, share.wall_contact_walls[k], {}, {}};
+    std::copy_n(share.wall_contact_images.data() + k * c.image.size(), c.image.size(),
+                c.image.begin());
     std::copy_n(share.wall_contact_springs.data() + k * L::kSprings, int{L::kSprings}, c.spring);
     old_walls_.push_back(c);
   }
@@ -164,17 +160,6 @@ void Lane<Dim>::queue_links(const CheckpointShare& share,
   }
 }
 
-template <int Dim>
-void Lane<Dim>::put_back(const CheckpointShare& share) {
-  for (std::size_t source = 0; source < share.ids.size(); ++source) {
-    const std::int32_t row = new_row_[source];
-    std::copy_n(share.positions.data() + source * Dim, Dim, store_.x(row));
-    std::copy_n(share.velocities.data() + source * Dim, Dim, store_.v(row));
-    std::copy_n(share.surface_speeds.data() + source * kSpins<Dim>, int{kSpins<Dim>},
-                store_.u(row));
-  }
-}
-
 template void Lane<2>::save(CheckpointShare&);
 template void Lane<3>::save(CheckpointShare&);
 template void Lane<2>::restore(int, int, const CheckpointShare&);
@@ -183,7 +168,5 @@ template void Lane<2>::queue_links(const CheckpointShare&,
                                    const std::unordered_map<std::int64_t, std::int32_t>&);
 template void Lane<3>::queue_links(const CheckpointShare&,
                                    const std::unordered_map<std::int64_t, std::int32_t>&);
-template void Lane<2>::put_back(const CheckpointShare&);
-template void Lane<3>::put_back(const CheckpointShare&);
 
 }  // namespace barchan

@@ -38,12 +38,7 @@ template <int Dim>
 void Lane<Dim>::collect_history(std::array<Migration<Dim>, 2>& leaving,
                                 std::span<const std::int32_t> number) {
   kept_.clear();
-  for (const Block& block : blocks_)
-    keep_staying(lists_[static_cast<std::size_t>(block.list)], block, leaving, number);
-  for (const Side side : {Left, Right}) {
-    for (const PairBlock& block : bands_[side].inner_blocks)
-      keep_staying(lists_[side == Left ? InnerLow : InnerHigh], block, leaving, number);
-  }
+  for (const Block& block : blocks_) keep_staying(block, leaving, number);
   imbalance_.contacts -= static_cast<std::int64_t>(kept_.size());
   if (kept_.capacity() > kept_.size() + kept_.size() / 8 + 2 * kBlockPairs) {
     std::vector<KeptContact> fitting;
@@ -54,8 +49,8 @@ void Lane<Dim>::collect_history(std::array<Migration<Dim>, 2>& leaving,
   for (const Side side : {Left, Right}) {
     const PairList& list = bands_[side].across;
     for (const PairBlock& block : bands_[side].blocks) {
-      block.for_each_worked_on(list, [&](std::size_t k, std::int32_t low, std::int32_t high) {
-        loosen(list, static_cast<std::int64_t>(k), {low, high}, side == Left, leaving, number);
+      block.for_each_worked_on(list, [&](std::size_t k, std::int32_t i, std::int32_t j) {
+        loosen(list, static_cast<std::int64_t>(k), {i, j}, side == Left, leaving, number);
       });
     }
   }
@@ -63,19 +58,18 @@ void Lane<Dim>::collect_history(std::array<Migration<Dim>, 2>& leaving,
 
 /// Pairs of two that stay are the rule, and nobody can foretell which near pairs have a spring.
 template <int Dim>
-void Lane<Dim>::keep_staying(const PairList& list, const PairBlock& block,
-                             std::array<Migration<Dim>, 2>& leaving,
+void Lane<Dim>::keep_staying(const PairBlock& block, std::array<Migration<Dim>, 2>& leaving,
                              std::span<const std::int32_t> number) {
   const auto stays = [this](std::int32_t row) {
     return store_.is_owned(row) && goes_[static_cast<std::size_t>(row)] == 0;
   };
   std::size_t count = kept_.size();
   kept_.resize(count + static_cast<std::size_t>(block.num_worked_on()));
-  block.for_each_worked_on(list, [&](std::size_t at, std::int32_t low, std::int32_t high) {
+  block.for_each_worked_on(pairs_, [&](std::size_t at, std::int32_t i, std::int32_t j) {
     const auto k = static_cast<std::int64_t>(at);
-    if (!stays(low) || !stays(high)) return loosen(list, k, {low, high}, true, leaving, number);
-    keep(kept_[count], list, k, low, high);
-    count += list.template has_spring<Dim>(k) ? 1 : 0;
+    if (!stays(i) || !stays(j)) return loosen(pairs_, k, {i, j}, true, leaving, number);
+    keep(kept_[count], pairs_, k, i, j);
+    count += pairs_.template has_spring<Dim>(k) ? 1 : 0;
   });
   kept_.resize(count);
 }
@@ -106,12 +100,9 @@ void Lane<Dim>::loosen(const PairList& list, std::int64_t k, std::array<std::int
 
 template <int Dim>
 typename Lane<Dim>::Slot Lane<Dim>::owned_slot(std::int32_t low, std::int32_t high) {
-  const ListName name = list_of(low, high);
-  PairList& list = lists_[name];
-  if (name == HeldLow || name == HeldHigh) return find_pair(list, {low, high});
   for (std::int64_t k = row_begin_[static_cast<std::size_t>(low)];
-       k < list.size() && list.i[static_cast<std::size_t>(k)] == low; ++k) {
-    if (list.j[static_cast<std::size_t>(k)] == high) return {&list, k};
+       k < pairs_.size() && pairs_.i[static_cast<std::size_t>(k)] == low; ++k) {
+    if (pairs_.j[static_cast<std::size_t>(k)] == high) return {&pairs_, k};
   }
   return {};
 }
@@ -121,7 +112,7 @@ typename Lane<Dim>::Slot Lane<Dim>::slot(std::int32_t a, std::int32_t b) {
   if (store_.is_owned(a) && store_.is_owned(b)) return owned_slot(std::min(a, b), std::max(a, b));
   const std::int32_t ghost = store_.is_owned(a) ? b : a, own = store_.is_owned(a) ? a : b;
   Band& band = bands_[ghost < store_.ghost_begin(Right) ? Left : Right];
-  return find_pair(band.across, band.ghosts_first ? std::pair(ghost, own) : std::pair(own, ghost));
+  return find_pair(band.across, {own, ghost});
 }
 
 template <int Dim>
@@ -205,17 +196,15 @@ void Lane<Dim>::restore_history() {
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.bonds().size()); ++b)
     imbalance_.bonds += counts_bond(b) ? 1 : 0;
 
-  walls_.search(store_, world_->wall_specs, world_->walls, world_->skin);
+  walls_.search(store_, world_->wall_view(), world_->skin);
   for (WallContact<Dim>& c : old_walls_) c.row = new_row_[static_cast<std::size_t>(c.row)];
-  std::sort(old_walls_.begin(), old_walls_.end(), [](const auto& p, const auto& q) {
-    return std::pair(p.row, p.wall) < std::pair(q.row, q.wall);
-  });
+  std::sort(old_walls_.begin(), old_walls_.end(),
+            [](const auto& p, const auto& q) { return key_of(p) < key_of(q); });
   auto old = old_walls_.begin();
   for (WallContact<Dim>& c : walls_.list()) {
-    while (old != old_walls_.end() && std::pair(old->row, old->wall) < std::pair(c.row, c.wall))
-      ++old;
+    while (old != old_walls_.end() && key_of(*old) < key_of(c)) ++old;
     if (old == old_walls_.end()) break;
-    if (old->row != c.row || old->wall != c.wall) continue;
+    if (key_of(*old) != key_of(c)) continue;
     if (has_spring(*old) && loses(Loss::WallContact)) continue;
     std::copy_n(old->spring, int{L::kSprings}, c.spring);
     if (has_spring(c)) ++imbalance_.wall_contacts;

@@ -17,6 +17,7 @@ void Measures::add(const Measures& other) {
   max_overlap = std::max(max_overlap, other.max_overlap);
   max_overlap_share = std::max(max_overlap_share, other.max_overlap_share);
   max_speed = std::max(max_speed, other.max_speed);
+  max_inverse_mass = std::max(max_inverse_mass, other.max_inverse_mass);
 }
 
 namespace {
@@ -37,6 +38,7 @@ void measure_motion(const ParticleStore<Dim>& store, const Vec3& gravity, Measur
     m.kinetic.add(0.5 * mass * (v2 + u2 / Layout<Dim>::kSpinGain));
     m.gravitational.add(mass * height);
     m.max_speed = std::max(m.max_speed, std::sqrt(v2));
+    m.max_inverse_mass = std::max(m.max_inverse_mass, im);
   }
 }
 
@@ -70,11 +72,10 @@ void measure_wall_contacts(const Lane<Dim>& lane, Measures& m) {
   const auto& store = lane.store();
   const auto& world = lane.world();
   for (const WallContact<Dim>& c : lane.wall_contacts().list()) {
-    double to_wall[3] = {};
     const auto w = static_cast<std::size_t>(c.wall);
     const double overlap =
         store.radius(c.row) -
-        WallContacts<Dim>::nearest(world.wall_specs[w], world.walls[w], store.x(c.row), to_wall);
+        world.wall_shapes[w].foot(world.walls[w].point, c.image, store.x(c.row)).distance;
     if (overlap <= 0.0) continue;
     const double* law =
         world.laws.view().rows +
@@ -95,7 +96,7 @@ Measures Lane<Dim>::measure(const Vec3& gravity) {
   unpack_history();
   Measures m;
   measure_motion(store_, gravity, m);
-  for (const PairList& list : lists_) measure_pairs(*this, list, m);
+  measure_pairs(*this, pairs_, m);
   if (bands_[Left].exists)
     measure_pairs(*this, bands_[Left].across, m);  // a pair across a cut counts on its right
   measure_wall_contacts(*this, m);
@@ -114,14 +115,14 @@ template <int Dim>
 std::vector<WallSums> Lane<Dim>::measure_walls() const {
   std::vector<WallSums> sums(world_->walls.size());
   for (std::size_t w = 0; w < wall_sums_.size(); ++w) sums[w].work = wall_sums_[w].work;
-  walls_.measure(store_, {world_->wall_specs, world_->walls, &world_->laws, world_->dt}, sums);
+  walls_.measure(store_, wall_frame(world_->dt), sums);
   return sums;
 }
 
 template <int Dim>
 Travel Lane<Dim>::travel() const {
   Travel t;
-  if (std::sqrt(last_distance2_) > 0.5 * world_->skin) t.distance2 = last_distance2_;
+  if (outrun_ > 1.0) t.distance2 = outrun_ * 0.25 * lists_skin_ * lists_skin_;
   const PeriodicBox& box = world_->grid.box();
   for (std::int32_t i = 0; i < store_.num_owned; ++i) {
     const double *x = store_.x(i), *v = store_.v(i);
@@ -132,10 +133,18 @@ Travel Lane<Dim>::travel() const {
     // Written so that NaN wins.
     if (!(d2 <= t.distance2)) t.distance2 = d2;
     if (!(v2 <= t.speed2)) t.speed2 = v2;
-    if (!world_->grid.contains(x))
-      t.outside = std::max(t.outside, store_.id[static_cast<std::size_t>(i)]);
   }
   return t;
+}
+
+template <int Dim>
+std::int64_t Lane<Dim>::last_outside() const {
+  std::int64_t last = 0;
+  for (std::int32_t i = 0; i < store_.num_owned; ++i) {
+    if (!world_->grid.contains(store_.x(i)))
+      last = std::max(last, store_.id[static_cast<std::size_t>(i)]);
+  }
+  return last;
 }
 
 template <int Dim>
@@ -168,6 +177,8 @@ template Measures Lane<3>::measure(const Vec3&);
 template std::vector<WallSums> Lane<2>::measure_walls() const;
 template std::vector<WallSums> Lane<3>::measure_walls() const;
 template Travel Lane<2>::travel() const;
+template std::int64_t Lane<2>::last_outside() const;
+template std::int64_t Lane<3>::last_outside() const;
 template Travel Lane<3>::travel() const;
 template double Lane<2>::distance2_of_last_step() const;
 template double Lane<3>::distance2_of_last_step() const;

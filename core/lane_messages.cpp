@@ -36,6 +36,10 @@ void check_links(const Migration<Dim>& m, const World<Dim>& world) {
   for (const auto& w : m.walls) {
     if (!is_below(w.number, n) || !is_below(w.wall, world.walls.size()))
       refuse("a contact with a wall that does not exist, or of a particle that is not in it");
+    for (const std::int32_t image : w.image) {
+      if (image <= -kFarthestImage || image >= kFarthestImage)
+        refuse("a contact with a wall that is too far away");
+    }
   }
   for (const auto& b : m.bonds) {
     const bool is_right = b.bond.id_a > 0 && b.bond.id_a < b.bond.id_b &&
@@ -85,8 +89,7 @@ std::vector<ParticleRecord<Dim>> decode_ghosts(std::span<const std::byte> messag
   in.finish();
   for (std::size_t g = 0; g < ghosts.size(); ++g) {
     check(ghosts[g], world);
-    const bool is_next = g == 0 || std::pair(ghosts[g - 1].key, ghosts[g - 1].id) <
-                                       std::pair(ghosts[g].key, ghosts[g].id);
+    const bool is_next = g == 0 || ghosts[g - 1].key <= ghosts[g].key;
     if (!is_next || ghosts[g].key / world.grid.slab_size() != slab)
       refuse("ghosts out of order or of another slab");
   }

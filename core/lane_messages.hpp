@@ -7,6 +7,7 @@
 
 #include <barchan/core/bonds.hpp>
 #include <barchan/core/layout.hpp>
+#include <barchan/core/wall_shape.hpp>
 
 // What lanes send each other at a rebuild, as bytes and back. Bytes that came in are held against
 // the receiver's world before anyone works on them: any bytes are safe, whoever sent them.
@@ -38,6 +39,7 @@ struct LooseContact {
 template <int Dim>
 struct WallRecord {
   std::int32_t number, wall;
+  WallImage image;
   double spring[Layout<Dim>::kSprings];
 };
 
@@ -68,7 +70,7 @@ template <int Dim>
                                               const World<Dim>& world, int slab_begin,
                                               int slab_end);
 
-/// Ghosts of one slab, in canonical order. Errors: RunError.
+/// Ghosts of one slab, by cells. Errors: RunError.
 template <int Dim>
 [[nodiscard]] std::vector<ParticleRecord<Dim>> decode_ghosts(std::span<const std::byte> message,
                                                              const World<Dim>& world, int slab);

@@ -67,16 +67,15 @@ template <int Dim>
 void Lane<Dim>::plan_prefetch() {
   prefetches_ = packs() && bytes() > kPrefetchBytes;
   if (!prefetches_) return;
-  const PairList& list = lists_[Owned];
   const std::int64_t line = world_->grid.cells(Dim - 1);
   const std::array<std::int64_t, 2> reach{world_->grid.slab_size() + line + 1, line + 1};
   const auto num_cells = static_cast<std::int64_t>(cells_.start.size()) - 1;
   std::array<std::int32_t, 2> met{};
   Block* before = nullptr;
   for (Block& block : blocks_) {
-    if (block.list != Owned || block.begin == block.end) continue;
+    if (block.begin == block.end) continue;
     const std::int32_t last =
-        std::min(list.i[static_cast<std::size_t>(block.end - 1)], store_.num_owned - 1);
+        std::min(pairs_.i[static_cast<std::size_t>(block.end - 1)], store_.num_owned - 1);
     const std::int64_t cell = store_.key[static_cast<std::size_t>(last)] - cells_.first_key;
     for (std::size_t edge = 0; edge < 2; ++edge) {
       const std::int64_t end = std::min(cell + reach[edge] + 1, num_cells);
@@ -89,13 +88,12 @@ void Lane<Dim>::plan_prefetch() {
 }
 
 template <int Dim>
-void Lane<Dim>::run_with_prefetch(PairList& list, const Block& block, const PairJob& pairs) const {
+void Lane<Dim>::run_with_prefetch(const Block& block, const PairJob& pairs) const {
   const Block* next = &block + 1;
-  if (next < blocks_.data() + blocks_.size() && next->list == block.list && next->is_packed)
-    prefetch_front<Dim>(list, *next);
+  if (next < blocks_.data() + blocks_.size() && next->is_packed) prefetch_front<Dim>(pairs_, *next);
   for (int part = 0; part < kParts; ++part) {
     for (const Rows rows : block.to_come) prefetch(part_of(rows, part));
-    run_kernel(list, part_of(pairs, part));
+    world_->kernels.pairs(part_of(pairs, part));
   }
 }
 

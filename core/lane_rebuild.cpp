@@ -6,7 +6,7 @@
 #include <barchan/core/row_order.hpp>
 #include <barchan/core/stopwatch.hpp>
 
-// Ownership and order: who leaves, who arrives, canonical order, ghosts.
+// Ownership and order: who leaves, who arrives, rows by cells, ghosts.
 
 namespace barchan {
 namespace {
@@ -80,13 +80,12 @@ void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byt
                               std::vector<std::byte>& to_right) {
   slab_begin_ = slab_begin;
   slab_end_ = slab_end;
-  last_distance2_ = distance2_of_last_step();
+  outrun_ = outrun_share(distance2_of_last_step(), lists_skin_);
   const std::int32_t n = store_.num_owned;
   goes_.assign(static_cast<std::size_t>(n), 0);
   std::vector<std::int32_t> number(static_cast<std::size_t>(n), 0);
   std::array<Migration<Dim>, 2> out;
   for (std::int32_t i = 0; i < n; ++i) {
-    world_->grid.wrap(store_.x(i));
     const auto at = static_cast<std::size_t>(i);
     const std::int64_t key_before = std::exchange(store_.key[at], world_->grid.key(store_.x(i)));
     goes_[at] = static_cast<std::int8_t>(direction_of(store_.key[at], key_before));
@@ -108,7 +107,7 @@ void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byt
       old_walls_.push_back(c);
       continue;
     }
-    WallRecord<Dim> w{number[at], c.wall, {}};
+    WallRecord<Dim> w{number[at], c.wall, c.image, {}};
     std::copy_n(c.spring, int{L::kSprings}, w.spring);
     out[static_cast<std::size_t>(goes_[at] - 1)].walls.push_back(w);
   }
@@ -157,7 +156,7 @@ void Lane<Dim>::absorb(std::span<const std::byte> message) {
     loose_.push_back(c);
   }
   for (const auto& w : walls) {
-    WallContact<Dim> c{first + w.number, w.wall, {}};
+    WallContact<Dim> c{first + w.number, w.wall, w.image, {}};
     std::copy_n(w.spring, int{L::kSprings}, c.spring);
     old_walls_.push_back(c);
   }
@@ -166,7 +165,7 @@ void Lane<Dim>::absorb(std::span<const std::byte> message) {
 
 template <int Dim>
 void Lane<Dim>::order() {
-  // Counting sort by cell, then by id within a cell.
+  // Counting sort by cell. Within a cell any order will do.
   const std::int64_t first_key = slab_begin_ * world_->grid.slab_size();
   const auto num_cells =
       static_cast<std::size_t>((slab_end_ - slab_begin_) * world_->grid.slab_size());
@@ -184,14 +183,7 @@ void Lane<Dim>::order() {
   for (std::size_t row = 0; row < goes_.size(); ++row) {
     if (goes_[row] != 0) continue;
     const auto cell = static_cast<std::size_t>(store_.key[row] - first_key);
-    std::int32_t at = next[cell]++;
-    for (; at > start[cell] &&
-           store_.id[static_cast<std::size_t>(source[static_cast<std::size_t>(at - 1)])] >
-               store_.id[row];
-         --at) {
-      source[static_cast<std::size_t>(at)] = source[static_cast<std::size_t>(at - 1)];
-    }
-    source[static_cast<std::size_t>(at)] = static_cast<std::int32_t>(row);
+    source[static_cast<std::size_t>(next[cell]++)] = static_cast<std::int32_t>(row);
   }
   new_row_.assign(goes_.size(), -1);
   for (std::int32_t i = 0; i < stays; ++i)
@@ -211,6 +203,7 @@ void Lane<Dim>::order() {
   for (std::int32_t i = 0; i < stays; ++i) {
     for (int c = 0; c < Dim; ++c) *reference++ = store_.x(i)[c];
   }
+  lists_skin_ = world_->skin;
   list_bonded();
 }
 

@@ -1,83 +1,51 @@
+#include <algorithm>
 #include <string>
 
 #include <barchan/core/error.hpp>
 #include <barchan/core/lane.hpp>
 
 // The published exchange: the band at a right cut goes to the right neighbour, which computes the
-// forces of each contact and sends them back.
+// forces of its contacts and sends them back, summed for every particle of the band: sums are
+// exact.
 //
-//   | number of contacts | force records … | bonds of the cut … |
-//
-// The unused component of a force record holds the number of the ghost that it belongs to.
+//   | force record of each particle of the band … | bonds of the cut … |
 
 namespace barchan {
-namespace {
-
-constexpr int kNumberSlot = 3;  // unused component of a force record
 
 template <int Dim>
-bool is_zero(const double* f) {
-  for (int c = 0; c < Layout<Dim>::kForce; ++c) {
-    if (f[c] != 0.0) return false;
-  }
-  return true;
-}
-
-}  // namespace
-
-template <int Dim>
-std::size_t Lane<Dim>::max_results_bytes(Side side) const {
-  const Band& band = bands_[side];
+std::size_t Lane<Dim>::results_bytes(Side side) const {
   const auto group = side == Left ? BondSet<Dim>::Left : BondSet<Dim>::Right;
-  const auto pairs = static_cast<std::size_t>(2 * band.across.size() + 64);
-  const auto bonds = static_cast<std::size_t>(bonds_.size(group)) * BondSet<Dim>::kExported;
-  return (1 + pairs * L::kForce + bonds) * sizeof(double);
+  const Rows band = bands_[Right].rows;
+  const std::int32_t rows = side == Left ? store_.num_ghosts[Left] : band.end - band.begin;
+  return (static_cast<std::size_t>(rows) * L::kForce +
+          static_cast<std::size_t>(bonds_.size(group)) * BondSet<Dim>::kExported) *
+         sizeof(double);
 }
 
 template <int Dim>
-void Lane<Dim>::results(std::vector<double>& out) const {
-  const Band& band = bands_[Left];
-  const std::int32_t ghosts = store_.ghost_begin(Left);
-  out.assign(1, 0.0);
-  const auto append = [&](std::size_t k, std::int32_t i, std::int32_t j) {
-    const double* f = band.across.result.data() + k * L::kForce;
-    if (is_zero<Dim>(f)) return;
-    out[0] += 1.0;
-    out.insert(out.end(), f, f + L::kForce);
-    out[out.size() - L::kForce + kNumberSlot] = (store_.is_owned(i) ? j : i) - ghosts;
-  };
-  for (const PairBlock& block : band.blocks) block.for_each_worked_on(band.across, append);
+void Lane<Dim>::results(std::vector<double>& out) {
+  const auto first = store_.force.begin() + std::ptrdiff_t{store_.ghost_begin(Left)} * L::kForce;
+  const auto last = first + std::ptrdiff_t{store_.num_ghosts[Left]} * L::kForce;
+  out.assign(first, last);
+  std::fill(first, last, 0.0);
   bonds_.export_group(BondSet<Dim>::Left, out);
 }
 
 template <int Dim>
 void Lane<Dim>::finish_right_band(std::span<const double> results) {
-  const Band& band = bands_[Right];
-  const auto num_bonds =
-      static_cast<std::size_t>(bonds_.size(BondSet<Dim>::Right)) * BondSet<Dim>::kExported;
-  const std::size_t num_contacts =
-      results.size() > num_bonds ? (results.size() - 1 - num_bonds) / L::kForce : 0;
-  if (results.size() != 1 + num_contacts * L::kForce + num_bonds ||
-      results[0] != static_cast<double>(num_contacts)) {
-    throw RunError("a results message has " + std::to_string(results.size()) +
-                   " numbers, which do not fit its contacts and " +
+  const Rows rows = bands_[Right].rows;
+  if (results.size() * sizeof(double) != results_bytes(Right)) {
+    throw RunError("a results message has " + std::to_string(results.size()) + " numbers for " +
+                   std::to_string(rows.end - rows.begin) + " particles and " +
                    std::to_string(bonds_.size(BondSet<Dim>::Right)) + " bonds");
   }
-  const double* f = results.data() + 1;
-  const double num_rows = band.rows.end - band.rows.begin;
-  for (std::size_t n = num_contacts; n > 0; --n, f += L::kForce) {
-    if (!(f[kNumberSlot] >= 0.0 && f[kNumberSlot] < num_rows))
-      throw RunError("a results message names a particle that is not in the band");
-    const std::int32_t own = band.rows.begin + static_cast<std::int32_t>(f[kNumberSlot]);
-    double* row = store_.f(own);
-    // The force is on the lower particle of the pair, and so is this one unless the ghosts come
-    // first.
-    for (int c = 0; c < Dim; ++c) row[c] = band.ghosts_first ? row[c] - f[c] : row[c] + f[c];
-    for (int c = L::kTorque; c < L::kTorque + kSpins<Dim>; ++c) row[c] += f[c];
+  const double* f = results.data();
+  for (std::int32_t i = rows.begin; i < rows.end; ++i) {
+    double* row = store_.f(i);
+    for (int c = 0; c < L::kForce; ++c) row[c] += *f++;
   }
-  finish_sums(Right);
   bonds_.import_group(BondSet<Dim>::Right, store_, f);
-  finish_rows(band.rows.begin, band.rows.end, true);
+  finish_rows(rows.begin, rows.end, true);
 }
 
 template class Lane<2>;

@@ -1,22 +1,10 @@
 #include <algorithm>
-#include <numbers>
 #include <unordered_map>
 
 #include <barchan/core/lane.hpp>
+#include <barchan/core/mass.hpp>
 
 namespace barchan {
-namespace {
-
-template <int Dim>
-double mass_of(const ParticleData& p) {
-  const double r = p.radius;
-  if constexpr (Dim == 2)
-    return p.density * std::numbers::pi * r * r;
-  else
-    return p.density * (4.0 / 3.0) * std::numbers::pi * r * r * r;
-}
-
-}  // namespace
 
 template <int Dim>
 void Lane<Dim>::seed(int slab_begin, int slab_end, std::span<const ParticleData> particles,
@@ -39,7 +27,7 @@ void Lane<Dim>::seed(int slab_begin, int slab_end, std::span<const ParticleData>
       x[L::kVelocity + c] = p.fixed ? 0.0 : p.velocity[c];
     }
     x[L::kRadius] = p.radius;
-    x[L::kInverseMass] = p.fixed ? 0.0 : 1.0 / mass_of<Dim>(p);
+    x[L::kInverseMass] = p.fixed ? 0.0 : 1.0 / mass_of(p, Dim);
     if constexpr (Dim == 3) std::fill_n(store_.u(i), 4, 0.0);
     for (int c = 0; c < kSpins<Dim>; ++c)
       store_.u(i)[c] = p.fixed ? 0.0 : p.radius * p.omega[Dim == 2 ? 2 : c];
@@ -50,14 +38,8 @@ void Lane<Dim>::seed(int slab_begin, int slab_end, std::span<const ParticleData>
     store_.flags[at] = static_cast<std::uint8_t>((p.fixed ? Store::kFixed : 0) |
                                                  (is_bonded[at] != 0 ? Store::kBonded : 0));
   }
-  for (std::size_t b = 0; b < bonds.size(); ++b) {
-    Bond<Dim> bond;
-    bond.id_a = std::min(bonds[b].id_a, bonds[b].id_b);
-    bond.id_b = std::max(bonds[b].id_a, bonds[b].id_b);
-    bond.law = bonds[b].law;
-    bond.length = bond_lengths[b];
-    bonds_.add(bond);
-  }
+  for (std::size_t b = 0; b < bonds.size(); ++b)
+    bonds_.add(bond_of<Dim>(bonds[b], bond_lengths[b]));
 }
 
 template void Lane<2>::seed(int, int, std::span<const ParticleData>, std::span<const BondData>,

@@ -29,22 +29,26 @@ PairJob Lane<Dim>::job(PairList& list) const {
   job.force = store.force.data();
   job.i = list.i.data();
   job.j = list.j.data();
-  job.row_i = list.row_i.empty() ? list.i.data() : list.row_i.data();
-  job.row_j = list.row_j.empty() ? list.j.data() : list.row_j.data();
   job.code = list.code.data();
   job.spring = list.spring.data();
-  job.result = list.result.data();
   job.begin = 0;
   job.end = list.size();
   job.dt = spring_step(frame_, world_->dt);
+  job.rounder = world_->grain.rounder();
   job.box = world_->grid.box();
   job.laws = world_->laws.view();
   return job;
 }
 
 template <int Dim>
+void Lane<Dim>::press_plates(const StepFrame& frame, std::span<WallSums> sums) {
+  walls_.press(store_, wall_frame(spring_step(frame, world_->dt)), sums);
+}
+
+template <int Dim>
 void Lane<Dim>::begin_step(const StepFrame& frame) {
   frame_ = frame;
+  wraps_now_ = world_->grid.box().any() && (frame.step + 1) % kEventSteps == 0;
   step_travel_ = speeds_.top * world_->dt;
   travel_ += step_travel_;
   speeds_ = {};
@@ -53,7 +57,6 @@ void Lane<Dim>::begin_step(const StepFrame& frame) {
   wall_sums_.resize(world_->walls.size());
   const bool is_carry_due = ++steps_since_start_ % kCarryEvery == 0;
   for (WallSums& sums : wall_sums_) {
-    for (ExactSum& force : sums.force) force = {};
     if (is_carry_due) sums.work.carry();
   }
   if (!bonds_.empty()) compute_bonds(BondSet<Dim>::Owned);
@@ -67,12 +70,11 @@ void Lane<Dim>::run_chunk(int chunk) {
 
 template <int Dim>
 void Lane<Dim>::run_block(Block& block) {
-  PairList& list = lists_[static_cast<std::size_t>(block.list)];
-  const PairJob pairs = block_job(list, block, travel_);
+  const PairJob pairs = block_job(pairs_, block, travel_);
   if (prefetches_)
-    run_with_prefetch(list, block, pairs);
+    run_with_prefetch(block, pairs);
   else
-    run_kernel(list, pairs);
+    world_->kernels.pairs(pairs);
   if (block.final_row > rows_done_) {
     finish_rows(rows_done_, block.final_row, block.has_extras);
     rows_done_ = block.final_row;
@@ -84,8 +86,7 @@ void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extra
   if (has_extras || !store_.external.empty()) {
     bonds_.add_to_rows(store_, begin, end);
     const double dt = spring_step(frame_, world_->dt);
-    walls_.add_to_rows(store_, {world_->wall_specs, world_->walls, &world_->laws, dt}, wall_sums_,
-                       begin, end);
+    walls_.add_to_rows(store_, wall_frame(dt), wall_sums_, begin, end);
     if (!store_.external.empty()) {
       const auto from = static_cast<std::size_t>(begin) * L::kForce,
                  to = static_cast<std::size_t>(end) * L::kForce;
@@ -101,10 +102,20 @@ void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extra
               world_->dt,
               {frame_.gravity[0], frame_.gravity[1], frame_.gravity[2]},
               frame_.local_damping,
-              most_speed()};
+              most_speed(),
+              world_->grain.most(),
+              store_.id.data()};
   const RowKernel advance =
       frame_.local_damping != 0.0 ? world_->kernels.rows_damped : world_->kernels.rows;
   speeds_.add(advance(rows));
+  if (wraps_now_) wrap_rows({begin, end});
+}
+
+/// At fixed steps, for what a position loses around the end of the box is part of the state.
+template <int Dim>
+void Lane<Dim>::wrap_rows(Rows rows) {
+  walls_.foresee_wrap(store_, world_->grid, world_->wall_shapes, rows);
+  for (std::int32_t i = rows.begin; i < rows.end; ++i) world_->grid.wrap(store_.x(i));
 }
 
 template <int Dim>
@@ -159,42 +170,9 @@ void Lane<Dim>::finish_band(Side side) {
   // Bonds come before contacts here too, as in begin_step: a pair whose bond breaks is in contact
   // in the same step.
   if (!bonds_.empty()) compute_bonds(side == Left ? BondSet<Dim>::Left : BondSet<Dim>::Right);
-  for (PairBlock& block : band.blocks) run_pairs(band.across, block, 0.5 * (travel_ + band.travel));
-  finish_sums(side);
+  for (PairBlock& block : band.blocks)
+    world_->kernels.pairs(block_job(band.across, block, 0.5 * (travel_ + band.travel)));
   finish_rows(band.rows.begin, band.rows.end, true);
-}
-
-/// What comes after ghosts that come first: in canonical order, pairs with rows before the band,
-/// within it, behind it.
-template <int Dim>
-void Lane<Dim>::finish_sums(Side side) {
-  if (!waits(side)) return;
-  Band& band = bands_[side];
-  if (side == Right) replay(band.rows);
-  PairList& inner = lists_[side == Left ? InnerLow : InnerHigh];
-  for (PairBlock& block : band.inner_blocks) run_pairs(inner, block, travel_);
-  if (side == Left) replay(band.rows);
-}
-
-template <int Dim>
-void Lane<Dim>::replay(Rows rows) {
-  const auto is_in = [rows](std::int32_t row) { return row >= rows.begin && row < rows.end; };
-  for (const Block& block : blocks_) {
-    const PairList& list = lists_[static_cast<std::size_t>(block.list)];
-    if (block.list == Owned) continue;
-    block.for_each_worked_on(list, [&](std::size_t k, std::int32_t i, std::int32_t j) {
-      const double* f = list.result.data() + k * L::kForce;
-      if (is_in(i)) {
-        double* row = store_.f(i);
-        for (int c = 0; c < L::kForce; ++c) row[c] += f[c];
-      }
-      if (is_in(j)) {
-        double* row = store_.f(j);
-        for (int c = 0; c < Dim; ++c) row[c] -= f[c];
-        for (int c = L::kTorque; c < L::kTorque + kSpins<Dim>; ++c) row[c] += f[c];
-      }
-    });
-  }
 }
 
 template <int Dim>
@@ -204,7 +182,7 @@ void Lane<Dim>::compute_bonds(typename BondSet<Dim>::Group group) {
   for (const std::int32_t bond : broken) unbind(bond);
   if (broken.empty()) return;
   list_bonded();
-  // Laws have changed. Bonds across a cut are pairs across it; results of other lists must stay.
+  // Laws have changed. Bonds across a cut are pairs across it.
   if (group == BondSet<Dim>::Owned)
     unpack_history();
   else

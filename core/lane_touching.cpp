@@ -85,16 +85,6 @@ double Lane<Dim>::packing_margin() const {
 }
 
 template <int Dim>
-void Lane<Dim>::run_pairs(PairList& list, PairBlock& block, double travel) {
-  run_kernel(list, block_job(list, block, travel));
-}
-
-template <int Dim>
-void Lane<Dim>::run_kernel(const PairList& list, const PairJob& pairs) const {
-  (list.result.empty() ? world_->kernels.pairs : world_->kernels.pairs_kept)(pairs);
-}
-
-template <int Dim>
 PairJob Lane<Dim>::block_job(PairList& list, PairBlock& block, double travel) {
   PairJob pairs = job(list);
   pairs.begin = block.begin;
@@ -113,11 +103,8 @@ void Lane<Dim>::pick_touching(PairList& list, PairBlock& block, PairJob& pairs, 
     // Both of a pair travel; a little less, for the rounding of positions and sums.
     block.packed_until = travel + 0.499 * margin;
   }
-  const bool is_redirected = !list.row_i.empty();
   pairs.i = list.packed_i.data();
   pairs.j = list.packed_j.data();
-  pairs.row_i = is_redirected ? list.packed_row_i.data() : pairs.i;
-  pairs.row_j = is_redirected ? list.packed_row_j.data() : pairs.j;
   pairs.code = list.packed_code.data();
   pairs.end = block.begin + (block.num_packed + kBatch - 1) / kBatch * kBatch;
 }
@@ -134,7 +121,6 @@ void Lane<Dim>::pack(PairList& list, PairBlock& block, const std::uint8_t* masks
   before.read(springs, num_before);
   const std::int64_t none = before.clear(num_before);
   const auto first = static_cast<std::size_t>(block.begin);
-  const bool is_redirected = !list.row_i.empty();
   std::int64_t old = 0, now = 0;
   for (std::int64_t k = 0; k < size; ++k) {
     const bool was = has_bit(known, k);
@@ -143,10 +129,6 @@ void Lane<Dim>::pack(PairList& list, PairBlock& block, const std::uint8_t* masks
     list.packed_i[to] = list.i[from];
     list.packed_j[to] = list.j[from];
     list.packed_code[to] = list.code[from];
-    if (is_redirected) {
-      list.packed_row_i[to] = list.row_i[from];
-      list.packed_row_j[to] = list.row_j[from];
-    }
     after.copy(now, before, was ? old : none);
     now += has_bit(masks, k) ? 1 : 0;
     old += was ? 1 : 0;
@@ -157,10 +139,6 @@ void Lane<Dim>::pack(PairList& list, PairBlock& block, const std::uint8_t* masks
     list.packed_i[to] = store_.waste();
     list.packed_j[to] = store_.waste() + 1;
     list.packed_code[to] = 0;
-    if (is_redirected) {
-      list.packed_row_i[to] = store_.waste();
-      list.packed_row_j[to] = store_.waste() + 1;
-    }
     after.clear(now);
   }
   after.write(springs, now);
@@ -170,12 +148,8 @@ void Lane<Dim>::pack(PairList& list, PairBlock& block, const std::uint8_t* masks
 
 template <int Dim>
 void Lane<Dim>::unpack_history() {
-  for (Block& block : blocks_) unpack<Dim>(lists_[static_cast<std::size_t>(block.list)], block);
-  for (const Side side : {Left, Right}) {
-    for (PairBlock& block : bands_[side].inner_blocks)
-      unpack<Dim>(lists_[side == Left ? InnerLow : InnerHigh], block);
-    unpack_history_across(side);
-  }
+  for (Block& block : blocks_) unpack<Dim>(pairs_, block);
+  for (const Side side : {Left, Right}) unpack_history_across(side);
 }
 
 template <int Dim>

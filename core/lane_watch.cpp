@@ -82,7 +82,7 @@ LinkCounts Lane<Dim>::remove(std::span<const std::int64_t> ids) {
       gone.contacts += goes ? 1 : 0;
     }
   };
-  for (const PairList& list : lists_) count(list);
+  count(pairs_);
   if (bands_[Left].exists) count(bands_[Left].across);
   for (const WallContact<Dim>& c : walls_.list())
     gone.wall_contacts += has_spring(c) && is_removed(c.row) ? 1 : 0;
@@ -97,12 +97,16 @@ LinkCounts Lane<Dim>::remove(std::span<const std::int64_t> ids) {
 template <int Dim>
 std::int32_t Lane<Dim>::first_fast_row() const {
   const double most = most_speed();
+  std::int32_t first = -1;
   for (std::int32_t i = 0; i < store_.num_owned; ++i) {
+    bool is_fast = false;
     for (int c = 0; c < Dim; ++c) {
-      if (!(std::fabs(store_.v(i)[c]) <= most) || !std::isfinite(store_.x(i)[c])) return i;
+      is_fast = is_fast || !(std::fabs(store_.v(i)[c]) <= most) || !std::isfinite(store_.x(i)[c]);
     }
+    const auto id = [this](std::int32_t row) { return store_.id[static_cast<std::size_t>(row)]; };
+    if (is_fast && (first < 0 || id(i) < id(first))) first = i;
   }
-  return fastest_row();
+  return first >= 0 ? first : fastest_row();
 }
 
 template <int Dim>
@@ -111,7 +115,9 @@ std::int32_t Lane<Dim>::fastest_row() const {
   double most = -1.0;
   for (std::int32_t i = 0; i < store_.num_owned; ++i) {
     const double v2 = speed2(store_, i);
-    if (v2 > most) fastest = i, most = v2;
+    const bool is_first = v2 == most && store_.id[static_cast<std::size_t>(i)] <
+                                            store_.id[static_cast<std::size_t>(fastest)];
+    if (v2 > most || is_first) fastest = i, most = v2;
   }
   return fastest;
 }
@@ -162,17 +168,17 @@ typename Lane<Dim>::Partners Lane<Dim>::partners_before_step(std::int32_t row) c
       found.ids.push_back(store_.id[static_cast<std::size_t>(other)]);
     }
   };
-  for (const PairList& list : lists_) look(list);
+  look(pairs_);
   for (const Band& band : bands_) {
     if (band.exists) look(band.across);
   }
   std::sort(found.ids.begin(), found.ids.end());
-  double to_wall[3] = {};
   for (const WallContact<Dim>& c : walls_.list()) {
     const auto w = static_cast<std::size_t>(c.wall);
-    if (c.row != row) continue;
-    if (!is_finite || WallContacts<Dim>::nearest(world_->wall_specs[w], world_->walls[w], at.data(),
-                                                 to_wall) < store_.radius(row))
+    if (c.row != row || (!found.walls.empty() && found.walls.back() == c.wall)) continue;
+    const Vec3& point = world_->walls[w].point;
+    if (!is_finite ||
+        world_->wall_shapes[w].foot(point, c.image, at.data()).distance < store_.radius(row))
       found.walls.push_back(c.wall);
   }
   return found;
@@ -182,15 +188,14 @@ template <int Dim>
 WorstOverlap Lane<Dim>::worst_overlap() const {
   WorstOverlap worst;
   const PeriodicBox& box = world_->grid.box();
-  for (const PairList& list : lists_) take_worst_pair(store_, box, list, worst);
+  take_worst_pair(store_, box, pairs_, worst);
   if (bands_[Left].exists) take_worst_pair(store_, box, bands_[Left].across, worst);
-  double to_wall[3] = {};
   for (const WallContact<Dim>& c : walls_.list()) {
     const auto w = static_cast<std::size_t>(c.wall);
     const double radius = store_.radius(c.row);
     const double overlap =
-        radius - WallContacts<Dim>::nearest(world_->wall_specs[w], world_->walls[w],
-                                            store_.x(c.row), to_wall);
+        radius -
+        world_->wall_shapes[w].foot(world_->walls[w].point, c.image, store_.x(c.row)).distance;
     WorstOverlap here{overlap / radius, overlap, store_.id[static_cast<std::size_t>(c.row)], 0,
                       c.wall,           {}};
     std::copy_n(store_.x(c.row), Dim, here.position);

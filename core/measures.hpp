@@ -15,6 +15,7 @@ struct Measures {
   double max_overlap = 0.0;        ///< [m], with particles or walls
   double max_overlap_share = 0.0;  ///< of the smaller radius
   double max_speed = 0.0;          ///< [m/s]
+  double max_inverse_mass = 0.0;   ///< of the lightest particle [1/kg]
   void add(const Measures& other);
 };
 
@@ -22,9 +23,8 @@ struct Measures {
 /// half the skin that was reached between a check and the rebuild it led to is told by the next
 /// check.
 struct Travel {
-  double distance2 = 0.0;    ///< largest squared displacement [m²]
-  double speed2 = 0.0;       ///< largest squared speed [m²/s²]
-  std::int64_t outside = 0;  ///< id of a particle that is out of the domain, the largest; 0: none
+  double distance2 = 0.0;  ///< largest squared displacement [m²]
+  double speed2 = 0.0;     ///< largest squared speed [m²/s²]
 };
 
 /// Seconds of contact search, by the phase that it is part of.

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <barchan/core/error.hpp>
+#include <barchan/core/source_record.hpp>
 #include <barchan/core/vec.hpp>
 
 // The contents of a deck, checked and in SI, for 2D and 3D alike (2D leaves z at zero).
@@ -97,6 +99,7 @@ struct WallSpec {
   double mass = 0.0;  ///< of a loaded plate [kg]
   double damping = 0.0;  ///< viscous, on a loaded plate [N·s/m]
   int from_stage = 0;    ///< absent before this stage
+  SourcePlace place;     ///< in the deck, if it comes from one
 };
 
 /// A stage of the run; it ends after a time or when the kinetic-energy ratio is low enough.
@@ -151,16 +154,22 @@ struct ParticleData {
   bool fixed = false;         ///< never moves: inverse mass and inertia are zero
 };
 
-/// An intact bond between two particles, straight and unstressed at the start.
+/// An intact bond between two particles, dimension-free; straight and unstressed unless it says
+/// otherwise.
 struct BondData {
   std::int64_t id_a = 0;  ///< lower id
   std::int64_t id_b = 0;
-  std::int32_t law = 0;  ///< index into Model::bond_laws
+  std::int32_t law = 0;         ///< index into Model::bond_laws
+  double length = 0.0;          ///< unstressed [m]; 0: the distance at the start
+  Vec3 shear = Vec3::Zero();    ///< force [N]; in 2D x: along the normal a → b turned left
+  Vec3 bending = Vec3::Zero();  ///< moment [N·m]; in 2D z
+  double twisting = 0.0;        ///< moment [N·m], in 3D
 };
 
 struct ParticleSet {
   std::vector<ParticleData> particles;
   std::vector<BondData> bonds;
+  std::vector<std::string> notes{};  ///< what a user should know of the files, a line each
 };
 
 struct Model {
@@ -179,6 +188,7 @@ struct Model {
   LimitSpec limits;
   OutputSpec output;
   CheckpointSpec checkpoint;
+  std::vector<SourceRecord> sources;  ///< what a restart holds its particles against; may be empty
 };
 
 }  // namespace barchan

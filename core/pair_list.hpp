@@ -11,18 +11,16 @@ namespace barchan {
 /// Pairs that are worked on in one go: a block's rows stay in the first cache.
 inline constexpr std::int64_t kBlockPairs = 32 * kBatch;
 
-/// Candidate pairs in canonical order, with their law and history; whole batches, padded with waste
-/// rows.
+/// Candidate pairs, sorted by both rows, with their law and history; whole batches, padded with
+/// waste rows.
 struct PairList {
-  AlignedVector<std::int32_t> i, j;          ///< lower and higher of each pair
-  AlignedVector<std::uint8_t> code;          ///< law of each pair
-  AlignedVector<double> spring;              ///< per batch of eight: component by component
-  AlignedVector<std::int32_t> row_i, row_j;  ///< where forces go, if not to i and j
-  AlignedVector<double> result;              ///< a force record each, if kept
+  AlignedVector<std::int32_t> i, j;  ///< rows of each pair
+  AlignedVector<std::uint8_t> code;  ///< law of each pair
+  AlignedVector<double> spring;      ///< per batch of eight: component by component
 
   // Pairs of each block that touch or nearly do, packed to its front (lane_touching.cpp); empty
   // where every candidate is worked on.
-  AlignedVector<std::int32_t> packed_i, packed_j, packed_row_i, packed_row_j;
+  AlignedVector<std::int32_t> packed_i, packed_j;
   AlignedVector<std::uint8_t> packed_code, mask;
 
   [[nodiscard]] std::int64_t size() const { return static_cast<std::int64_t>(i.size()); }
@@ -30,19 +28,11 @@ struct PairList {
     i.clear();
     j.clear();
     code.clear();
-    row_i.clear();
-    row_j.clear();
   }
   void push(std::int32_t a, std::int32_t b, std::uint8_t law) {
     i.push_back(a);
     j.push_back(b);
     code.push_back(law);
-  }
-  void copy(std::int64_t from, std::int64_t to) {
-    const auto k = static_cast<std::size_t>(from), at = static_cast<std::size_t>(to);
-    i[at] = i[k];
-    j[at] = j[k];
-    code[at] = code[k];
   }
   /// Makes it at least n long, with pairs that are any.
   void make_room(std::int64_t n) {
@@ -57,7 +47,6 @@ struct PairList {
   }
   void prepare_packing() {
     for (auto* column : {&packed_i, &packed_j}) resize_with_room(*column, i.size());
-    for (auto* column : {&packed_row_i, &packed_row_j}) resize_with_room(*column, row_i.size());
     resize_with_room(packed_code, i.size());
     resize_with_room(mask, i.size() / kBatch);
   }
@@ -102,11 +91,8 @@ struct PairList {
     return ((s[0] != 0.0) | (s[kBatch] != 0.0) | (s[2 * kBatch] != 0.0)) != 0;
   }
   [[nodiscard]] std::size_t bytes() const {
-    return 4 * (i.capacity() + j.capacity() + row_i.capacity() + row_j.capacity() +
-                packed_i.capacity() + packed_j.capacity() + packed_row_i.capacity() +
-                packed_row_j.capacity()) +
-           code.capacity() + packed_code.capacity() + mask.capacity() +
-           8 * (spring.capacity() + result.capacity());
+    return 4 * (i.capacity() + j.capacity() + packed_i.capacity() + packed_j.capacity()) +
+           code.capacity() + packed_code.capacity() + mask.capacity() + 8 * spring.capacity();
   }
 };
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -44,13 +45,14 @@ struct Hole {
   double radius = 0.0;         ///< [m] > 0
 };
 
-/// A table of particles; a `.csv` with a header, or a LAMMPS data file (atom style sphere) ending
-/// in `.data`. The `type` column counts materials from 1 in deck order unless
-/// ParticleSource::material is given.
+/// A file that read_particles knows by its ending. Types count materials from 1 in deck order
+/// unless ParticleSource::material is given; bonds of the file are linked as they are, and their
+/// types count bond laws unless ParticleSource::bond is given.
 struct FileSource {
   /// As opened: a relative path of the deck is already joined to the deck's folder.
   std::string path;
-  enum class Format { Csv, LammpsData } format = Format::Csv;
+  /// LAMMPS data in 2D: mass = 4/3·pi·r³·density, not pi·r²·density.
+  bool has_sphere_density = true;
 };
 
 /// Particles on a regular grid whose first site lies at region.lo + spacing/2 on every axis.
@@ -94,16 +96,25 @@ struct ListSource {
   std::vector<ParticleData> particles;
 };
 
+/// Which particles ParticleSource::bond links: those that touch, unless one of these is given.
+struct BondLinks {
+  SourcePlace place;          ///< of the bond in the deck, or of what says it otherwise
+  std::optional<double> gap;  ///< between surfaces up to which two are linked [m]
+  std::vector<std::pair<std::int64_t, std::int64_t>> pairs;  ///< exactly these ids
+};
+
 /// One [[particles]] table. Sources follow each other in deck order, and so do the ids of their
 /// particles.
 struct ParticleSource {
   SourcePlace place;              ///< of the table in the deck, for errors found while generating
+  SourceRecord record;            ///< what the table says, for checkpoints
   std::optional<int> material;    ///< index; none only for a file that brings its own types
   std::optional<double> density;  ///< instead of the material's (or the file's), 2D areal
   Vec3 velocity = Vec3::Zero();   ///< [m/s]; a file's own velocities are added to it
   Vec3 omega = Vec3::Zero();      ///< [rad/s]; a file's own are added to it
   std::optional<int> bond;  ///< index into Model::bond_laws: bonds those of this source that touch
-      ///< (ring: the neighbours along it; touch: gap <= 1e-6 of the radii's sum)
+      ///< (ring: the neighbours along it; touch: gap <= 1e-6 of the radii's sum), see BondLinks
+  BondLinks links;
   std::optional<Box> fixed;  ///< particles with centres in here never move; endless box = all
   std::variant<FileSource, LatticeSource, PackingSource, RingSource, ListSource> kind;
 };

@@ -8,12 +8,11 @@
 
 namespace barchan {
 
-/// Particles of one lane, in canonical order, then two rows that belong to nobody, then ghosts:
+/// Particles of one lane, by cells, then two rows that belong to nobody, then ghosts:
 ///
 ///   | owned 0 … n−1 | waste n, n+1 | left ghosts | right ghosts |
 ///
-/// The waste rows pad batches of pairs (they never touch: radius 0) and take forces that are kept
-/// for later.
+/// The waste rows pad batches of pairs: they never touch, for their radius is 0.
 template <int Dim>
 struct ParticleStore {
   using L = Layout<Dim>;
@@ -58,12 +57,6 @@ struct ParticleStore {
   }
   [[nodiscard]] double radius(std::int32_t i) const { return x(i)[L::kRadius]; }
   [[nodiscard]] double inverse_mass(std::int32_t i) const { return x(i)[L::kInverseMass]; }
-
-  /// Canonical order of any two, owned or ghost.
-  [[nodiscard]] bool precedes(std::int32_t a, std::int32_t b) const {
-    const auto p = static_cast<std::size_t>(a), q = static_cast<std::size_t>(b);
-    return key[p] != key[q] ? key[p] < key[q] : id[p] < id[q];
-  }
 
   /// Makes room for all rows, waste rows set, forces zero.
   void resize_for_ghosts();

@@ -125,6 +125,22 @@ void check_plate(const Model& model, const WallSpec& wall, const std::string& ke
   not_negative(key + "damping", wall.damping);
 }
 
+/// A period must map a plane onto itself.
+void check_plane(const Model& model, const WallSpec& wall, const std::string& key) {
+  constexpr double kRounding = 1e-12;  // of a unit normal
+  for (int axis = 0; axis < model.dimension && wall.kind == WallKind::Plane; ++axis) {
+    const bool is_across = model.domain.periodic[static_cast<std::size_t>(axis)] &&
+                           std::abs(wall.normal[axis]) > kRounding;
+    require(!is_across, key + "normal",
+            fmt::format("the plane '{}' lies across the periodic axis {}: one period further it "
+                        "would be another plane",
+                        wall.name, "xyz"[axis]),
+            fmt::format("give it a normal with {0} = 0, write kind = \"plate\" with a width, or "
+                        "take {0} out of domain.periodic",
+                        "xyz"[axis]));
+  }
+}
+
 void check_walls(const Model& model) {
   constexpr double kSlack = 1e-9;
   for (std::size_t w = 0; w < model.walls.size(); ++w) {
@@ -144,6 +160,7 @@ void check_walls(const Model& model) {
             fmt::format("wall '{}' appears at stage {}", wall.name, wall.from_stage),
             fmt::format("there are {}, which count from 0", model.stages.size()));
     check_plate(model, wall, key);
+    check_plane(model, wall, key);
   }
 }
 

@@ -4,15 +4,18 @@
 #include <cstdint>
 #include <iterator>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include <barchan/core/contact_law.hpp>
 #include <barchan/core/exact_sum.hpp>
-#include <barchan/core/kernels/pair_job.hpp>
+#include <barchan/core/grid.hpp>
 #include <barchan/core/law_table.hpp>
 #include <barchan/core/model.hpp>
 #include <barchan/core/particle_store.hpp>
+#include <barchan/core/rows.hpp>
 #include <barchan/core/simd/scalar.hpp>
+#include <barchan/core/wall_shape.hpp>
 
 namespace barchan {
 
@@ -31,16 +34,22 @@ struct WallSums {
   ExactSum force[3], torque[3];  ///< of the particles on the wall [N], about its point [N·m]
   ExactSum work;                 ///< of the wall on the particles [J]
   void add(const WallSums& other);
-  void add_force(const WallState& state, const Vec3& at, const Vec3& force_on_wall);
 };
 
-/// A particle near a wall, with the tangential spring of their contact.
+/// A particle near an image of a wall, with the tangential spring of their contact.
 template <int Dim>
 struct WallContact {
   std::int32_t row = 0;
   std::int32_t wall = 0;
+  WallImage image{};
   double spring[Layout<Dim>::kSprings] = {};
 };
+
+/// What the order of a list goes by, and what finds a contact again after a rebuild.
+template <int Dim>
+[[nodiscard]] auto key_of(const WallContact<Dim>& contact) {
+  return std::tuple(contact.row, contact.wall, contact.image);
+}
 
 template <int Dim>
 [[nodiscard]] bool has_spring(const WallContact<Dim>& contact) {
@@ -48,42 +57,64 @@ template <int Dim>
                      [](double s) { return s != 0.0; });
 }
 
-/// A wall is a particle of radius 0 and infinite mass at its point nearest to the particle.
+/// The walls of a run, as they are now.
+template <int Dim>
+struct WallView {
+  std::span<const WallSpec> specs;
+  std::span<const WallShape<Dim>> shapes;
+  std::span<const WallState> states;
+};
+
+/// A wall is a particle of radius 0 at its point nearest to the particle, and of infinite mass
+/// unless it is a loaded plate. One that is touched by several images is touched several times.
+///
+/// The force of a step k on a loaded plate moves the plate in that step. So its contacts come first
+/// (`press`), and while the sum over all ranks is on its way, all rows take up what was kept:
+///
+///     press(k) precedes add_to_rows(k);   press(k) … sum … plates move precedes press(k+1)
 template <int Dim>
 class WallContacts {
  public:
-  /// Lists rows within `skin` of an active wall, ordered by row, then wall.
-  void search(const ParticleStore<Dim>& store, std::span<const WallSpec> specs,
-              std::span<const WallState> states, double skin);
+  /// Lists rows within `skin` of an active wall, ordered by row, wall, image. A fixed particle
+  /// touches loaded plates only: there alone its force is of use.
+  void search(const ParticleStore<Dim>& store, const WallView<Dim>& walls, double skin);
+  /// Before positions of these rows are wrapped into the box: images as they will be seen from there.
+  void foresee_wrap(const ParticleStore<Dim>& store, const Grid<Dim>& grid,
+                    std::span<const WallShape<Dim>> shapes, Rows rows);
 
-  std::vector<WallContact<Dim>>& list() { return list_; }
-  [[nodiscard]] const std::vector<WallContact<Dim>>& list() const { return list_; }
+  [[nodiscard]] std::span<WallContact<Dim>> list() { return list_; }
+  [[nodiscard]] std::span<const WallContact<Dim>> list() const { return list_; }
+  [[nodiscard]] std::size_t bytes() const {
+    return list_.capacity() * sizeof(WallContact<Dim>) + loaded_.capacity() * sizeof(std::size_t) +
+           kept_.capacity() * sizeof(Force);
+  }
 
   struct Frame {
-    std::span<const WallSpec> specs;
-    std::span<const WallState> states;
+    WallView<Dim> walls;
     const LawTable* laws = nullptr;
     double dt = 0.0;
   };
-  /// Adds wall forces to rows [begin, end). @param sums  one a wall; force and work of walls that
-  /// move are added up
+  /// Computes contacts with loaded plates, keeps their forces for add_to_rows, and adds the forces
+  /// on the plates to `sums`, one a wall.
+  void press(const ParticleStore<Dim>& store, const Frame& frame, std::span<WallSums> sums);
+  /// Adds wall forces to rows [begin, end). @pre press(), where there are loaded plates
+  /// @param sums  one a wall; the work of walls with a given velocity is added up
   void add_to_rows(ParticleStore<Dim>& store, const Frame& frame, std::span<WallSums> sums,
                    std::int32_t begin, std::int32_t end);
   /// Force and torque on all walls as the next step will find them; changes no spring.
   void measure(const ParticleStore<Dim>& store, const Frame& frame, std::span<WallSums> sums) const;
 
-  /// Distance from a position to a wall and the vector to its nearest point.
-  static double nearest(const WallSpec& spec, const WallState& state, const double* x,
-                        double* to_wall);
-
  private:
+  using Force = PairForce<simd::Scalar, Dim>;  ///< on the particle
   struct Push {
-    PairForce<simd::Scalar, Dim> on_particle;
-    Vec3 at, on_wall;
+    Force on_particle;
+    Vec3 arm, on_wall;
   };
   static Push push(const ParticleStore<Dim>& store, const Frame& frame, WallContact<Dim>& contact);
 
   std::vector<WallContact<Dim>> list_;
+  std::vector<std::size_t> loaded_;  ///< places in the list of contacts with loaded plates
+  std::vector<Force> kept_;          ///< of each of them
 };
 
 extern template class WallContacts<2>;

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <barchan/core/bonds.hpp>
+#include <barchan/core/force_grain.hpp>
 #include <barchan/core/grid.hpp>
 #include <barchan/core/kernels/kernel_set.hpp>
 #include <barchan/core/law_table.hpp>
@@ -12,26 +14,55 @@
 
 namespace barchan {
 
+/// Travel with lists of a skin, squared, over that up to which they have all contacts.
+[[nodiscard]] inline double outrun_share(double distance2, double skin) {
+  if (distance2 == 0.0) return 0.0;
+  return distance2 / (0.25 * skin * skin);
+}
+
 /// What all lanes of a run share.
 template <int Dim>
 struct World {
   Grid<Dim> grid;
   LawTable laws;
+  ForceGrain grain;
   KernelSet kernels;
   std::vector<BondLaw> bond_laws;
   std::vector<WallSpec> wall_specs;
+  std::vector<WallShape<Dim>> wall_shapes;
   std::vector<WallState> walls;
   ContactSearchKind search = ContactSearchKind::Cells;
-  double skin = 0.0;  ///< [m]
-  double dt = 0.0;    ///< [s]
+  double skin = 0.0;         ///< that the next lists get [m]
+  double most_travel = 0.0;  ///< in a step, beyond which contacts may be missed [m]
+  double dt = 0.0;           ///< [s]
   std::int64_t num_particles = 0;
+
+  /// Walls where the run begins. @pre the grid is made
+  void set_walls(std::span<const WallSpec> specs) {
+    wall_specs.assign(specs.begin(), specs.end());
+    wall_shapes.clear();
+    walls.clear();
+    for (const WallSpec& spec : specs) {
+      wall_shapes.emplace_back(spec, grid.box());
+      WallState& state = walls.emplace_back();
+      state.point = spec.point;
+      state.velocity = spec.velocity;
+      state.is_active = spec.from_stage <= 0;
+    }
+  }
+  [[nodiscard]] WallView<Dim> wall_view() const { return {wall_specs, wall_shapes, walls}; }
 };
+
+/// Every so many steps comes what must not depend on when lists are rebuilt: positions go around
+/// the ends of a periodic box, particles outside the domain are noticed, overlaps are looked at.
+inline constexpr std::int64_t kEventSteps = 16;
 
 /// What changes from step to step.
 struct StepFrame {
   double kick = 0.0;           ///< dt, or dt/2 in the first step [s]
   double gravity[3] = {};      ///< [m/s²]
   double local_damping = 0.0;  ///< of the stage (Stage)
+  std::int64_t step = 0;
 };
 
 }  // namespace barchan

@@ -56,6 +56,7 @@ CheckpointKeeper::CheckpointKeeper(const Communicator& communicator, std::string
     : communicator_(communicator),
       folder_(std::move(folder)),
       title_(model.title),
+      sources_(model.sources),
       spec_(spec),
       first_step_(step),
       dimension_(model.dimension),
@@ -165,8 +166,8 @@ std::vector<std::int64_t> CheckpointKeeper::numbers() const {
   std::int64_t* mine = numbers.data() + kNumbers * static_cast<std::size_t>(communicator_.rank());
   mine[0] = static_cast<std::int64_t>(seal_.bytes);
   mine[1] = std::bit_cast<std::int64_t>(seal_.hash);
-  mine[2] = copy_.slab_begin;
-  mine[3] = copy_.slab_end;
+  mine[2] = std::bit_cast<std::int64_t>(copy_.lo);
+  mine[3] = std::bit_cast<std::int64_t>(copy_.hi);
   for (const CheckpointShare& share : copy_.shares) {
     mine[4] += static_cast<std::int64_t>(share.ids.size());
     mine[5] += static_cast<std::int64_t>(share.contact_ids.size() / 2);
@@ -177,14 +178,15 @@ std::vector<std::int64_t> CheckpointKeeper::numbers() const {
 }
 
 Manifest CheckpointKeeper::agreed_manifest() const {
-  Manifest manifest{copy_.step, copy_.time, dimension_, title_, {}};
+  Manifest manifest{copy_.step, copy_.time, dimension_, title_, {}, sources_};
   const auto numbers = agreement_.sums();
   for (std::size_t r = 0; r < static_cast<std::size_t>(communicator_.size()); ++r) {
     const auto of_rank = numbers.subspan(kNumbers * r, kNumbers);
     const RankFileSeal seal{static_cast<std::uint64_t>(of_rank[0]),
                             std::bit_cast<std::uint64_t>(of_rank[1])};
-    manifest.files.push_back(
-        {seal, of_rank[2], of_rank[3], of_rank[4], of_rank[5], of_rank[6], of_rank[7]});
+    manifest.files.push_back({seal, std::bit_cast<double>(of_rank[2]),
+                              std::bit_cast<double>(of_rank[3]), of_rank[4], of_rank[5], of_rank[6],
+                              of_rank[7]});
   }
   return manifest;
 }

@@ -18,7 +18,7 @@ namespace barchan {
 struct CheckpointCopy {
   std::int64_t step = 0;
   double time = 0.0;
-  std::int64_t slab_begin = 0, slab_end = 0;
+  double lo = 0.0, hi = 0.0;            ///< see ManifestFile
   std::vector<std::byte> state;         ///< rank 0; see state.hpp
   std::vector<CheckpointShare> shares;  ///< of the lanes
 };
@@ -79,6 +79,7 @@ class CheckpointKeeper {
   const Communicator& communicator_;
   CheckpointFolder folder_;
   std::string title_;
+  std::vector<SourceRecord> sources_;
   CheckpointSpec spec_;
   std::int64_t first_step_;
   int dimension_;

@@ -11,6 +11,7 @@
 #include <barchan/core/exact_sum.hpp>
 #include <barchan/core/layout.hpp>
 #include <barchan/core/simd/scalar.hpp>
+#include <barchan/core/wall_shape.hpp>
 #include <barchan/tasks/checkpoint_read.hpp>
 #include <barchan/tasks/results/agree.hpp>
 #include <barchan/tasks/strip_plan.hpp>
@@ -31,7 +32,6 @@ void take(const std::vector<T>& from, std::size_t number, std::size_t width, std
 template <int Dim>
 void take_particle(const CheckpointShare& from, std::size_t p, CheckpointShare& to) {
   take(from.ids, p, 1, to.ids);
-  take(from.references, p, Dim, to.references);
   take(from.positions, p, Dim, to.positions);
   take(from.velocities, p, Dim, to.velocities);
   take(from.surface_speeds, p, kSpins<Dim>, to.surface_speeds);
@@ -59,6 +59,7 @@ void take_links(const CheckpointShare& from, const Ids& mine, CheckpointShare& t
     if (!mine.contains(from.wall_contact_ids[k])) continue;
     take(from.wall_contact_ids, k, 1, to.wall_contact_ids);
     take(from.wall_contact_walls, k, 1, to.wall_contact_walls);
+    take(from.wall_contact_images, k, WallImage().size(), to.wall_contact_images);
     take(from.wall_contact_springs, k, kSprings, to.wall_contact_springs);
   }
   for (std::size_t k = 0; k < from.bond_laws.size(); ++k) {
@@ -70,8 +71,8 @@ void take_links(const CheckpointShare& from, const Ids& mine, CheckpointShare& t
   }
 }
 
-/// Loads the shares of one rank. Files name the slabs that their particles are in; links reach one
-/// slab further.
+/// Loads the shares of one rank. Files name where along the strip axis their particles lie; links
+/// reach as far as a slab is wide.
 template <int Dim>
 class Loader {
  public:
@@ -131,17 +132,16 @@ class Loader {
     return RankFile(checkpoint_.path, checkpoint_.manifest, r).view().share(limits_);
   }
   [[nodiscard]] std::size_t slab(const CheckpointShare& share, std::size_t p) const {
-    return static_cast<std::size_t>(grid_.coordinate(share.references.data() + p * Dim, 0));
+    return static_cast<std::size_t>(grid_.coordinate(share.positions.data() + p * Dim, 0));
   }
 
   void count_file(std::size_t r, std::vector<std::int64_t>& sums) {
     const CheckpointShare share = read(r);
     const ManifestFile& listed = checkpoint_.manifest.files[r];
     for (std::size_t p = 0; p < share.ids.size(); ++p) {
-      const auto s = static_cast<std::int64_t>(slab(share, p));
-      if (s < listed.slab_begin || s >= listed.slab_end)
-        refuse(r, "has particles outside its slabs");
-      ++sums[static_cast<std::size_t>(s)];
+      const double at = grid_.along_strips(share.positions.data() + p * Dim);
+      if (!(at >= listed.lo && at <= listed.hi)) refuse(r, "has particles outside its strip");
+      ++sums[slab(share, p)];
     }
     for (const double distance2 : share.outruns) outrun_ = std::max(outrun_, distance2);
     for (std::size_t t = 0; t < share.totals.size(); ++t)
@@ -166,12 +166,13 @@ class Loader {
     }
   }
 
-  /// Whether a file has particles within `reach` slabs of this rank's, around the end too.
+  /// Whether a file has particles within `reach` slabs of this rank's, around the end too. A slab
+  /// more, for what lies outside the domain counts to the last slab, and for rounding.
   [[nodiscard]] bool concerns(const ManifestFile& file, int reach) const {
-    const std::int64_t n = grid_.num_slabs();
-    for (const std::int64_t shift : {std::int64_t{0}, n, -n}) {
-      if (file.slab_begin + shift < end_ + reach && file.slab_end + shift > begin_ - reach)
-        return true;
+    if (file.particles == 0) return false;
+    const int n = grid_.num_slabs(), first = grid_.slab_at(file.lo), last = grid_.slab_at(file.hi);
+    for (const int shift : {0, n, -n}) {
+      if (first + shift <= end_ + reach && last + shift >= begin_ - reach - 1) return true;
     }
     return false;
   }
@@ -195,6 +196,15 @@ class Loader {
   int begin_ = 0, end_ = 0;
 };
 
+void check_same_sources(const OpenCheckpoint& checkpoint, const Model& model) {
+  const std::string what = source_differences(checkpoint.manifest.sources, model.sources);
+  if (what.empty()) return;
+  throw InputError(SourcePlace{checkpoint.path, 0, 0},
+                   "the checkpoint is of a run with other particles: " + what,
+                   "restart with the [[particles]] of that run; or leave --restart out and give "
+                   "--out another folder, to begin a run with these");
+}
+
 }  // namespace
 
 OpenCheckpoint open_checkpoint(const Communicator& communicator, const std::string& path,
@@ -211,6 +221,7 @@ OpenCheckpoint open_checkpoint(const Communicator& communicator, const std::stri
     const RankFile first(path, checkpoint.manifest, 0);
     checkpoint.state = decode_state(first.view().state(), file);
     check_same_model(checkpoint.state, model, file);
+    check_same_sources(checkpoint, model);
     const bool is_whole = checkpoint.state.step == checkpoint.manifest.step &&
                           checkpoint.state.num_particles == checkpoint.manifest.totals().particles;
     if (!is_whole)

@@ -4,11 +4,15 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
+#include <limits>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include <barchan/comm/clock.hpp>
 #include <barchan/comm/mpi_session.hpp>
 #include <barchan/core/error.hpp>
+#include <barchan/core/generators/check_walls.hpp>
 #include <barchan/tasks/stop_request.hpp>
 
 namespace barchan {
@@ -41,7 +45,7 @@ std::int64_t Simulation::EngineOf<Dim>::run(std::int64_t num_steps) {
   std::int64_t done = 0;
   stopped_ = stopped_ && num_steps == 0;
   try {
-    while (done < num_steps && !stopped_) done += go_on(num_steps - done);
+    while (done < num_steps && !stopped_ && !last_stage_ends()) done += go_on(num_steps - done);
   } catch (const AgreedError&) {
     is_in_step_ = false;  // thrown before the step did anything
     failure_ = std::current_exception();
@@ -67,17 +71,19 @@ std::int64_t Simulation::EngineOf<Dim>::go_on(std::int64_t most) {
   if (schedule_->is_check_due(step_))
     schedule_->begin_check(check_numbers(), {stop_is_requested(), wants_checkpoint()});
   schedule_->poll();
-  plates_->drive(world_.walls, step_);
 
   StepFrame frame;
+  frame.step = step_;
   frame.kick = step_ == 0 ? 0.5 * world_.dt : world_.dt;
   for (int c = 0; c < 3; ++c) frame.gravity[c] = model_.gravity[c];
   frame.local_damping = model_.stages[static_cast<std::size_t>(stage_)].local_damping;
   const int steps = steps_in_a_go(most);
+  const bool drives_plates = plates_->are_driven(world_.walls);
+  if (drives_plates) press_plates(frame);
   graph_->run(frame, steps);
-  stop_if_fast();
+  stop_if_wrong();
 
-  if (plates_->needs_forces(world_.walls)) plates_->collect(wall_sums(), step_);
+  if (drives_plates) kick_plates();
   plates_->move(world_.walls);
   step_ += steps;
   is_in_step_ = false;
@@ -90,15 +96,16 @@ std::int64_t Simulation::EngineOf<Dim>::go_on(std::int64_t most) {
 template <int Dim>
 int Simulation::EngineOf<Dim>::steps_in_a_go(std::int64_t most) {
   if (strip_->exchange() != nullptr || strip_->num_lanes() == 1 || step_ == 0) return 1;
-  const bool is_last_stage = static_cast<std::size_t>(stage_) + 1 == model_.stages.size();
   const bool walls_stand = std::all_of(
       world_.walls.begin(), world_.walls.end(),
       [](const WallState& wall) { return !wall.is_active || wall.velocity == Vec3::Zero(); });
-  if (!is_last_stage || !walls_stand || plates_->needs_forces(world_.walls)) return 1;
+  if (!is_last_stage() || !walls_stand || plates_->are_driven(world_.walls)) return 1;
   const auto steps_until = [&](std::int64_t end) {
     std::int64_t steps = 1;
     end = std::min(end, step_ + most);
-    while (step_ + steps < end && !(keeper_ && keeper_->is_due(step_ + steps))) ++steps;
+    while (step_ + steps < end && !(keeper_ && keeper_->is_due(step_ + steps)) &&
+           !stage_may_end(step_ + steps))
+      ++steps;
     return static_cast<int>(steps);
   };
   if (schedule_->is_check_due(step_)) {
@@ -114,18 +121,30 @@ int Simulation::EngineOf<Dim>::steps_in_a_go(std::int64_t most) {
   return steps_until(schedule_->next_part(step_));
 }
 
-/// The earliest step in which a lane was, and in that the first lane.
+/// The earliest step in which a lane went wrong, and in that the lowest id of a fast particle, or
+/// of one that bore too much.
 template <int Dim>
-void Simulation::EngineOf<Dim>::stop_if_fast() {
-  int first = -1;
+void Simulation::EngineOf<Dim>::stop_if_wrong() {
+  int steps = std::numeric_limits<int>::max();
   for (int l = 0; l < strip_->num_lanes(); ++l) {
-    if (strip_->lane(l).is_fast() &&
-        (first < 0 || graph_->steps_done(l) < graph_->steps_done(first)))
-      first = l;
+    if (strip_->lane(l).must_stop()) steps = std::min(steps, graph_->steps_done(l));
   }
-  if (first < 0) return;
-  step_ += graph_->steps_done(first) - 1;
-  report_fast(first);
+  if (steps == std::numeric_limits<int>::max()) return;
+  step_ += steps - 1;
+  int fast = -1;
+  Overload overload;
+  const auto id_in = [this](int l) {
+    const Lane<Dim>& lane = strip_->lane(l);
+    return lane.store().id[static_cast<std::size_t>(lane.first_fast_row())];
+  };
+  for (int l = 0; l < strip_->num_lanes(); ++l) {
+    const Lane<Dim>& lane = strip_->lane(l);
+    if (!lane.must_stop() || graph_->steps_done(l) != steps) continue;
+    overload.add(lane.overload());
+    if (lane.is_fast() && (fast < 0 || id_in(l) < id_in(fast))) fast = l;
+  }
+  if (fast >= 0) report_fast(fast);
+  report_overload(overload);
 }
 
 /// Chunks of about kChunkSeconds, by what the pairs have cost since the last rebuild. No bit
@@ -154,19 +173,25 @@ void Simulation::EngineOf<Dim>::update_lists() {
     must_save_ = true;
     forget_checkpoint_request();
   }
-  if (const auto answer = schedule_->take_answer()) judge(*answer);
+  if (const auto answer = schedule_->take_answer()) {
+    judge(*answer);
+    if (answer->skin > 0.0) next_skin_ = answer->skin;
+    must_rebuild_ = must_rebuild_ || next_skin_ != world_.skin;
+  }
   if (must_remove_) remove_outside();
-  if (!travelled && !must_rebuild_) return;
+  const bool is_test = options_.rebuild_every > 0 && step_ % options_.rebuild_every == 0;
+  if (!travelled && !must_rebuild_ && !is_test) return;
   size_chunks();
   const double begin = now();
-  const double walls_went = wall_distance2();
+  const double walls_outran = outrun_share(wall_distance2(), world_.skin);
+  world_.skin = next_skin_;
+  schedule_->set_skin(next_skin_);
   if (step_ >= options_.loss.step && communicator_.rank() + 1 == communicator_.size())
     strip_->lane(0).lose(std::exchange(options_.loss.what, Loss::Nothing));
   strip_->rebuild([this](const std::function<void(int)>& body) { graph_->for_each_lane(body); });
-  strip_->lane(0).note_travel(walls_went);
+  strip_->lane(0).note_outrun(walls_outran);
   for (std::size_t w = 0; w < world_.walls.size(); ++w)
     walls_at_rebuild_[w] = world_.walls[w].point;
-  watch_overlap();
   watch_growth();
   schedule_->rebuilt(step_);
   must_rebuild_ = false;
@@ -176,18 +201,47 @@ void Simulation::EngineOf<Dim>::update_lists() {
 }
 
 template <int Dim>
+bool Simulation::EngineOf<Dim>::is_last_stage() const {
+  return static_cast<std::size_t>(stage_) + 1 == model_.stages.size();
+}
+
+template <int Dim>
 void Simulation::EngineOf<Dim>::update_stage() {
-  if (step_ == 0) return;
-  if (static_cast<std::size_t>(stage_) + 1 < model_.stages.size() && stage_is_over())
-    enter_stage(stage_ + 1);
+  if (step_ > 0 && !is_last_stage() && stage_is_over()) enter_stage(stage_ + 1);
+}
+
+/// The run ends with its last stage, between two steps; a restart from there comes to the same
+/// verdict.
+template <int Dim>
+bool Simulation::EngineOf<Dim>::last_stage_ends() {
+  if (is_over_ || step_ == 0 || !is_last_stage() || !stage_is_over()) return is_over_;
+  is_over_ = true;
+  if (communicator_.is_root())
+    note(fmt::format("the last stage, '{}', is over, and the run with it",
+                     model_.stages.back().name));
+  return true;
+}
+
+template <int Dim>
+bool Simulation::EngineOf<Dim>::stage_time_is_over(std::int64_t step) const {
+  const Stage& stage = model_.stages[static_cast<std::size_t>(stage_)];
+  return static_cast<double>(step - stage_begin_) * world_.dt >= stage.max_time - 0.5 * world_.dt;
+}
+
+/// Whether somebody must look, before that step, whether the stage is over.
+template <int Dim>
+bool Simulation::EngineOf<Dim>::stage_may_end(std::int64_t step) const {
+  if (stage_time_is_over(step)) return true;
+  const std::int64_t steps = step - stage_begin_;
+  return model_.stages[static_cast<std::size_t>(stage_)].kinetic_ratio > 0.0 && steps > 0 &&
+         steps % kStageCheck == 0;
 }
 
 template <int Dim>
 bool Simulation::EngineOf<Dim>::stage_is_over() {
+  if (!stage_may_end(step_)) return false;
+  if (stage_time_is_over(step_)) return true;
   const Stage& stage = model_.stages[static_cast<std::size_t>(stage_)];
-  const std::int64_t steps = step_ - stage_begin_;
-  if (static_cast<double>(steps) * world_.dt >= stage.max_time - 0.5 * world_.dt) return true;
-  if (stage.kinetic_ratio <= 0.0 || steps == 0 || steps % kStageCheck != 0) return false;
   return taped_verdict(communicator_, [&] {
     const Measures m = measure();
     return m.kinetic.value() < stage.kinetic_ratio * m.elastic.value();
@@ -200,21 +254,60 @@ void Simulation::EngineOf<Dim>::enter_stage(int stage) {
   stage_begin_ = step_;
   for (std::size_t w = 0; w < world_.walls.size(); ++w) {
     const bool active = world_.wall_specs[w].from_stage <= stage;
-    if (active != world_.walls[w].is_active) must_rebuild_ = true;  // walls come into the lists
+    if (active == world_.walls[w].is_active) continue;
+    must_rebuild_ = true;  // walls come into the lists
     world_.walls[w].is_active = active;
+    refuse_intruders(w);
   }
 }
 
+/// Collective. A wall that appears where a particle is would throw it out.
 template <int Dim>
-std::vector<WallSums> Simulation::EngineOf<Dim>::wall_sums() const {
-  std::vector<WallSums> sums(world_.walls.size());
-  for (int l = 0; l < strip_->num_lanes(); ++l) {
-    const auto& mine = strip_->lane(l).wall_sums();
-    for (std::size_t w = 0; w < mine.size(); ++w) {
-      for (int c = 0; c < 3; ++c) sums[w].force[c].add(mine[w].force[c]);
-    }
-  }
-  return sums;
+void Simulation::EngineOf<Dim>::refuse_intruders(std::size_t wall) {
+  std::int64_t first = 0, count = 0;
+  std::string what;
+  for_each_owned([&](const OwnedParticle& p) {
+    ParticleData here;
+    here.id = p.id;
+    here.radius = p.radius;
+    here.position = p.position;
+    here.fixed = std::isinf(p.mass);
+    const WallFoot foot =
+        world_.wall_shapes[wall].foot(world_.walls[wall].point, p.position.data());
+    const auto found = intrusion(world_.wall_specs[wall], foot, here, Dim);
+    if (!found) return;
+    ++count;
+    if (first != 0 && first < p.id) return;
+    first = p.id;
+    what = *found;
+  });
+  communicator_.allreduce_sum(std::span(&count, 1));
+  if (count == 0) return;
+  constexpr double kNone = -std::numeric_limits<double>::infinity();
+  what = from_rank_with_most(first == 0 ? kNone : -static_cast<double>(first), what);
+  throw AgreedError(fmt::format(
+      "at step {} wall '{}' appears with stage '{}' where particles are: {}{}; let it appear "
+      "elsewhere or later, or take particles away from there",
+      step_, model_.walls[wall].name, model_.stages[static_cast<std::size_t>(stage_)].name, what,
+      count == 1 ? "" : fmt::format(", and {} more", count - 1)));
+}
+
+/// What particles press loaded plates with, on its way to all ranks while the step is computed.
+/// Contacts with plates are few, so one thread does all lanes.
+template <int Dim>
+void Simulation::EngineOf<Dim>::press_plates(const StepFrame& frame) {
+  plate_sums_.assign(world_.walls.size(), WallSums());
+  for (int l = 0; l < strip_->num_lanes(); ++l) strip_->lane(l).press_plates(frame, plate_sums_);
+  plates_->begin(plate_sums_);
+}
+
+/// All ranks know the work of a plate; the first one counts it.
+template <int Dim>
+void Simulation::EngineOf<Dim>::kick_plates() {
+  const int appears_in = step_ == stage_begin_ ? stage_ : -1;
+  plate_sums_.assign(world_.walls.size(), WallSums());
+  plates_->kick(world_.walls, appears_in,
+                communicator_.is_root() ? strip_->lane(0).wall_sums() : plate_sums_);
 }
 
 template class Simulation::EngineOf<2>;

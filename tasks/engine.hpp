@@ -10,6 +10,7 @@
 #include <barchan/tasks/plates.hpp>
 #include <barchan/tasks/rebuild_schedule.hpp>
 #include <barchan/tasks/simulation.hpp>
+#include <barchan/tasks/skin_tuner.hpp>
 #include <barchan/tasks/step_graph.hpp>
 #include <barchan/tasks/strip.hpp>
 #include <barchan/tasks/world_setup.hpp>
@@ -22,6 +23,7 @@ class Simulation::Engine {
   virtual ~Engine() = default;
   virtual std::int64_t run(std::int64_t num_steps) = 0;
   virtual void for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const = 0;
+  virtual void for_each_bond(const BondVisitor& visit) = 0;
   virtual void apply_forces(const std::function<Vec3(const OwnedParticle&)>& force) = 0;
   virtual void clear_forces() = 0;
   virtual Measures measure() = 0;
@@ -33,6 +35,7 @@ class Simulation::Engine {
   [[nodiscard]] virtual std::int64_t num_owned() const = 0;
   [[nodiscard]] virtual std::string vector_width() const = 0;
   [[nodiscard]] virtual double skin() const = 0;
+  [[nodiscard]] virtual double force_grain() const = 0;
 
   virtual void save_checkpoint() = 0;
 
@@ -48,6 +51,7 @@ class Simulation::Engine {
   std::int64_t num_particles_ = 0;
   int stage_ = 0;
   bool stopped_ = false;
+  bool is_over_ = false;  ///< the last stage is
   bool is_in_step_ = false;     ///< or one was not ended
   std::exception_ptr failure_;  ///< what run() threw
   std::string restored_from_;   ///< checkpoint; empty: a new run
@@ -72,6 +76,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   ~EngineOf() override;
   std::int64_t run(std::int64_t num_steps) override;
   void for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const override;
+  void for_each_bond(const BondVisitor& visit) override;
   void apply_forces(const std::function<Vec3(const OwnedParticle&)>& force) override;
   void clear_forces() override;
   Measures measure() override;
@@ -83,6 +88,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   [[nodiscard]] std::int64_t num_owned() const override { return strip_->num_owned(); }
   [[nodiscard]] std::string vector_width() const override { return name_of(world_.kernels.width); }
   [[nodiscard]] double skin() const override { return world_.skin; }
+  [[nodiscard]] double force_grain() const override { return world_.grain.size; }
   void save_checkpoint() override;
 
  private:
@@ -98,11 +104,18 @@ class Simulation::EngineOf final : public Simulation::Engine {
   void make_trace();
   std::int64_t go_on(std::int64_t most);
   [[nodiscard]] int steps_in_a_go(std::int64_t most);
-  void stop_if_fast();
+  void stop_if_wrong();
   void update_lists();
   void size_chunks();
+  void press_plates(const StepFrame& frame);
+  void kick_plates();
   void update_stage();
   void enter_stage(int stage);
+  void refuse_intruders(std::size_t wall);
+  [[nodiscard]] bool is_last_stage() const;
+  [[nodiscard]] bool last_stage_ends();
+  [[nodiscard]] bool stage_time_is_over(std::int64_t step) const;
+  [[nodiscard]] bool stage_may_end(std::int64_t step) const;
   [[nodiscard]] bool stage_is_over();
   [[nodiscard]] CheckNumbers check_numbers();
   // engine_watch.cpp
@@ -123,20 +136,23 @@ class Simulation::EngineOf final : public Simulation::Engine {
   [[noreturn]] void report_outrun(const CheckNumbers& answer);
   [[noreturn]] void report_departures(const std::vector<Departure>& departures);
   [[noreturn]] void report_fast(int lane);
+  [[noreturn]] void report_overload(const Overload& overload);
   [[nodiscard]] std::string describe(const Suspect& suspect,
                                      const typename Lane<Dim>::Partners& touched) const;
   [[nodiscard]] typename Lane<Dim>::Partners partners_of(const Suspect& suspect);
   [[nodiscard]] std::string describe_fastest();
   [[nodiscard]] std::string describe_worst_overlap();
   [[nodiscard]] std::string from_rank_with_most(double mine, const std::string& text);
-  [[nodiscard]] std::vector<WallSums> wall_sums() const;
   [[nodiscard]] OwnedParticle particle(const ParticleStore<Dim>& store, std::int32_t i) const;
 
   World<Dim> world_;
   std::unique_ptr<Strip<Dim>> strip_;
   std::unique_ptr<StepGraph<Dim>> graph_;
   std::unique_ptr<RebuildSchedule> schedule_;
+  std::optional<SkinTuner> tuner_;  ///< of rank 0
+  double next_skin_ = 0.0;          ///< that all ranks agreed on [m]
   std::unique_ptr<Plates> plates_;
+  std::vector<WallSums> plate_sums_;  ///< of this rank, in a step
   std::vector<Vec3> walls_at_rebuild_;
   std::int64_t stage_begin_ = 0;
   bool must_rebuild_ = false;

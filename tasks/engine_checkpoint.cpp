@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <tuple>
 
 #include <fmt/format.h>
 
@@ -21,11 +22,10 @@ Vec3 vec(const double (&from)[3]) {
   return {from[0], from[1], from[2]};
 }
 
-SavedWall saved(const WallState& wall, const Vec3& point_at_rebuild) {
+SavedWall saved(const WallState& wall) {
   SavedWall s{};
   put(wall.point, s.point);
   put(wall.velocity, s.velocity);
-  put(point_at_rebuild, s.point_at_rebuild);
   put(wall.force, s.force);
   put(wall.torque, s.torque);
   s.work = wall.work;
@@ -53,11 +53,11 @@ void Simulation::EngineOf<Dim>::save_checkpoint() {
   CheckpointCopy& copy = keeper_->begin();
   copy.step = step_;
   copy.time = static_cast<double>(step_) * model_.time.step;
-  copy.slab_begin = strip_->lane(0).slab_begin();
-  copy.slab_end = strip_->lane(strip_->num_lanes() - 1).slab_end();
+  std::tie(copy.lo, copy.hi) = strip_->extent();
   copy.shares.resize(static_cast<std::size_t>(strip_->num_lanes()));
   graph_->for_each_lane(
       [&](int l) { strip_->lane(l).save(copy.shares[static_cast<std::size_t>(l)]); });
+  copy.shares[0].outruns.push_back(outrun_share(wall_distance2(), world_.skin));
   copy.state.clear();
   if (communicator_.is_root()) copy.state = encode(state());
   keeper_->start();
@@ -67,6 +67,7 @@ void Simulation::EngineOf<Dim>::save_checkpoint() {
 
 template <int Dim>
 CheckpointState Simulation::EngineOf<Dim>::state() {
+  const RebuildSchedule::PendingLook look = schedule_->pending_look(step_);
   CheckpointState s;
   s.step = step_;
   s.stage = stage_;
@@ -76,19 +77,15 @@ CheckpointState Simulation::EngineOf<Dim>::state() {
   s.start_particles = scale_.num_particles;
   s.has_bonds = scale_.has_bonds;
   s.num_particles = num_particles_;
-  const RebuildSchedule::State schedule = schedule_->state(step_);
-  s.check_step = schedule.check_step;
-  s.interval = schedule.interval;
-  s.has_check = schedule.has_check;
-  s.check = schedule.check;
-  s.check_particles = schedule.num_particles;
+  s.grain = scale_.grain.size;
+  s.look_step = look.step;
+  s.look_outside = look.outside;
+  s.look_overlap = look.overlap;
   s.left_particles = left_.particles;
   s.left_contacts = left_.links.contacts;
   s.left_wall_contacts = left_.links.wall_contacts;
   s.left_bonds = left_.links.bonds;
-  s.plate_forces = plates_->forces();
-  for (std::size_t w = 0; w < world_.walls.size(); ++w)
-    s.walls.push_back(saved(world_.walls[w], walls_at_rebuild_[w]));
+  for (const WallState& wall : world_.walls) s.walls.push_back(saved(wall));
   s.fingerprint = fingerprint(model_);
   return s;
 }
@@ -100,11 +97,12 @@ Simulation::EngineOf<Dim>::EngineOf(const Model& model, const std::string& check
   const OpenCheckpoint open = open_checkpoint(communicator_, checkpoint, model_);
   const CheckpointState& s = open.state;
   restored_from_ = open.path;
-  make_world({s.skin, s.reach, s.start_particles, s.has_bonds});
+  const double skin = model_.search.skin.value_or(s.skin);
+  make_world({skin, s.reach - s.skin + skin, s.start_particles, s.has_bonds, {s.grain}});
   make_strip();
   for (std::size_t w = 0; w < s.walls.size(); ++w) {
     world_.walls[w].is_active = s.walls[w].is_active != 0.0;
-    walls_at_rebuild_[w] = world_.walls[w].point = vec(s.walls[w].point_at_rebuild);
+    walls_at_rebuild_[w] = world_.walls[w].point = vec(s.walls[w].point);
   }
   restore_particles(open);
   make_loop();
@@ -162,16 +160,14 @@ void Simulation::EngineOf<Dim>::restore(const OpenCheckpoint& checkpoint) {
   stage_begin_ = s.stage_begin;
   for (std::size_t w = 0; w < s.walls.size(); ++w) {
     WallState& wall = world_.walls[w];
-    wall.point = vec(s.walls[w].point);
     wall.velocity = vec(s.walls[w].velocity);
     wall.force = vec(s.walls[w].force);
     wall.torque = vec(s.walls[w].torque);
     wall.work = s.walls[w].work;
   }
   left_ = {s.left_particles, {s.left_contacts, s.left_wall_contacts, s.left_bonds}};
-  schedule_->restore({s.check_step, s.interval, s.has_check, s.check, s.check_particles},
-                     communicator_.is_root());
-  plates_->restore(s.plate_forces, communicator_.is_root());
+  schedule_->restore(step_, {s.look_step, s.look_outside, s.look_overlap},
+                     communicator_.is_root() ? num_particles_ : 0);
 }
 
 template class Simulation::EngineOf<2>;

@@ -76,11 +76,9 @@ typename Lane<Dim>::Partners Simulation::EngineOf<Dim>::partners_of(const Suspec
     if (!piece.empty()) std::memcpy(found.ids.data() + known, piece.data(), piece.size());
   }
   std::sort(found.ids.begin(), found.ids.end());
-  double to_wall[3] = {};
   for (std::size_t w = 0; w < world_.walls.size(); ++w) {
-    if (world_.walls[w].is_active &&
-        WallContacts<Dim>::nearest(world_.wall_specs[w], world_.walls[w], s.position, to_wall) <
-            s.radius)
+    const WallState& wall = world_.walls[w];
+    if (wall.is_active && world_.wall_shapes[w].foot(wall.point, s.position).distance < s.radius)
       found.walls.push_back(static_cast<std::int32_t>(w));
   }
   return found;
@@ -149,17 +147,29 @@ void Simulation::EngineOf<Dim>::report_fast(int l) {
                   s.speed2 < std::numeric_limits<double>::max()
                       ? fmt::format("it moves farther in one step than half the skin of {:.3g} m, "
                                     "so that contacts may be missed",
-                                    world_.skin)
+                                    2.0 * world_.most_travel)
                       : "its state is no longer finite"));
+}
+
+/// This rank alone knows, as with a fast particle.
+template <int Dim>
+void Simulation::EngineOf<Dim>::report_overload(const Overload& overload) {
+  throw StepError(
+      step_,
+      fmt::format(
+          "in step {} the contacts of particle {} press with {:.4g} N in all; sums of forces "
+          "are exact up to {:.4g} N, which follows from limits.overlap_error; less overlap at "
+          "the start or a smaller time.step would help, or a larger limits.overlap_error",
+          step_, overload.id, overload.force, world_.grain.most()));
 }
 
 template <int Dim>
 void Simulation::EngineOf<Dim>::report_departures(const std::vector<Departure>& left) {
   const Departure& first = left.front();
   throw AgreedError(
-      fmt::format("at step {} particle {} is out of the domain, at {} with velocity {}{}: enlarge "
-                  "domain.lo and domain.hi, put a wall there, or take particles out with "
-                  "domain.outside = \"delete\"",
+      fmt::format("at step {} particle {} is out of the domain, at {} with velocity {}{}: "
+                  "domain.outside = \"delete\" lets particles go, from a checkpoint too; a larger "
+                  "domain or a wall there needs a run from the start",
                   step_, first.id, in_brackets(first.position, Dim),
                   in_brackets(first.velocity, Dim),
                   left.size() == 1 ? "" : fmt::format(", and {} more are", left.size() - 1)),

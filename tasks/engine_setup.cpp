@@ -5,6 +5,7 @@
 
 #include <barchan/comm/strips.hpp>
 #include <barchan/core/error.hpp>
+#include <barchan/core/generators/check_walls.hpp>
 #include <barchan/core/generators/make_particles.hpp>
 #include <barchan/tasks/engine.hpp>
 #include <barchan/tasks/stability.hpp>
@@ -18,13 +19,17 @@ Simulation::EngineOf<Dim>::EngineOf(const Model& model, const ParticleSet& parti
                                     Communicator communicator, const RunOptions& options)
     : Engine(model, std::move(communicator), options) {
   check_particles(model_, particles);
+  check_walls(model_, particles);
   check_time_step(model_, step_limits(model_, particles));
   num_particles_ = static_cast<std::int64_t>(particles.particles.size());
   const double skin = model_.search.skin.value_or(default_skin(particles));
-  make_world({skin, search_reach(particles, skin), num_particles_, !particles.bonds.empty()});
+  make_world({skin, search_reach(model_, particles, skin), num_particles_, !particles.bonds.empty(),
+              barchan::force_grain(model_, particles)});
   make_strip();
   strip_->seed(particles);
   make_loop();
+  const std::string coarse = coarse_grain_warning(world_.grain, model_, particles);
+  if (!coarse.empty() && communicator_.is_root()) note(coarse, true);
 }
 
 template <int Dim>
@@ -41,7 +46,10 @@ void Simulation::EngineOf<Dim>::make_loop() {
   strip_->restart_waits();
   graph_ = std::make_unique<StepGraph<Dim>>(*strip_, options_);
   schedule_ = std::make_unique<RebuildSchedule>(communicator_, world_.skin, world_.dt,
-                                                model_.gravity.norm());
+                                                model_.gravity.norm(), kEventSteps);
+  next_skin_ = world_.skin;
+  if (communicator_.is_root() && options_.tune_skin && !model_.search.skin)
+    tuner_.emplace(world_.skin);
   plates_ = std::make_unique<Plates>(communicator_, world_.wall_specs, world_.dt);
   if (options_.trace) make_trace();
   watch_growth();

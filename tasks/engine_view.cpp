@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <barchan/tasks/engine.hpp>
@@ -30,6 +31,27 @@ void Simulation::EngineOf<Dim>::for_each_owned(
   for (int l = 0; l < strip_->num_lanes(); ++l) {
     const auto& store = strip_->lane(l).store();
     for (std::int32_t i = 0; i < store.num_owned; ++i) visit(particle(store, i));
+  }
+}
+
+template <int Dim>
+void Simulation::EngineOf<Dim>::for_each_bond(const BondVisitor& visit) {
+  strip_->complete_halo();
+  const PeriodicBox& box = world_.grid.box();
+  for (int l = 0; l < strip_->num_lanes(); ++l) {
+    const Lane<Dim>& lane = strip_->lane(l);
+    const BondSet<Dim>& bonds = lane.bonds();
+    for (std::int32_t i = 0; i < static_cast<std::int32_t>(bonds.bonds().size()); ++i) {
+      if (!lane.counts_bond(i)) continue;
+      const double *a = lane.store().x(bonds.end_a(i)), *b = lane.store().x(bonds.end_b(i));
+      Vec3 first = Vec3::Zero(), second = Vec3::Zero();
+      for (int c = 0; c < Dim; ++c) {
+        const double d = b[c] - a[c];
+        first[c] = a[c];
+        second[c] = a[c] + (d - box.length[c] * std::rint(d * box.inverse[c]));
+      }
+      visit(data_of(bonds.bonds()[static_cast<std::size_t>(i)]), first, second);
+    }
   }
 }
 
@@ -84,11 +106,13 @@ Measures Simulation::EngineOf<Dim>::measure() {
     std::copy_n(from, ExactSum::kDigits, sum->digits().begin());
     from += ExactSum::kDigits;
   }
-  double maxima[3] = {mine.max_overlap, mine.max_speed, mine.max_overlap_share};
+  double maxima[4] = {mine.max_overlap, mine.max_speed, mine.max_overlap_share,
+                      mine.max_inverse_mass};
   communicator_.allreduce_max(std::span<double>(maxima));
   mine.max_overlap = maxima[0];
   mine.max_speed = maxima[1];
   mine.max_overlap_share = maxima[2];
+  mine.max_inverse_mass = maxima[3];
   overlap_ = std::max(overlap_, mine.max_overlap_share);
   for (std::size_t w = 0; w < walls.size(); ++w) {
     for (int c = 0; c < 3; ++c) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -40,7 +41,6 @@ Travel Simulation::EngineOf<Dim>::travel() const {
     const Travel t = strip_->lane(l).travel();
     if (!(t.distance2 <= most.distance2)) most.distance2 = t.distance2;
     if (!(t.speed2 <= most.speed2)) most.speed2 = t.speed2;
-    most.outside = std::max(most.outside, t.outside);
   }
   for (std::size_t w = 0; w < world_.walls.size(); ++w) {
     const WallState& wall = world_.walls[w];
@@ -55,15 +55,26 @@ Travel Simulation::EngineOf<Dim>::travel() const {
 template <int Dim>
 CheckNumbers Simulation::EngineOf<Dim>::check_numbers() {
   const Travel t = travel();
-  CheckNumbers mine{
-      std::sqrt(t.distance2), std::sqrt(t.speed2), t.outside, overlap_, strip_->num_owned(), {}};
+  CheckNumbers mine;
+  mine.distance = std::sqrt(t.distance2);
+  mine.speed = std::sqrt(t.speed2);
+  mine.particles = strip_->num_owned();
+  if (tuner_) {
+    const StepTimes times = graph_->times();
+    mine.skin = tuner_->wish(step_, times.chunks + times.bands + rebuild_seconds_);
+  }
+  if (schedule_->is_look(step_)) {
+    watch_overlap();
+    for (int l = 0; l < strip_->num_lanes(); ++l)
+      mine.outside = std::max(mine.outside, strip_->lane(l).last_outside());
+    mine.overlap = std::exchange(overlap_, 0.0);
+  }
   for (int l = 0; l < strip_->num_lanes(); ++l) {
     const LinkCounts& lane = strip_->lane(l).imbalance();
     mine.imbalance.contacts += lane.contacts;
     mine.imbalance.wall_contacts += lane.wall_contacts;
     mine.imbalance.bonds += lane.bonds;
   }
-  overlap_ = 0.0;
   return mine;
 }
 
@@ -84,8 +95,8 @@ void Simulation::EngineOf<Dim>::judge(const CheckNumbers& answer) {
   if (is_harmless(answer)) return;
   if (!std::isfinite(answer.distance) || !std::isfinite(answer.speed)) {
     throw AgreedError(
-        fmt::format("at step {} the state is no longer finite: {}; a smaller time.step, more "
-                    "damping or less overlap at the start would help",
+        fmt::format("at step {} the state is no longer finite: {}; start the run anew with a "
+                    "smaller time.step, more damping or less overlap",
                     step_, describe_fastest()));
   }
   judge_balance(answer);
@@ -166,11 +177,12 @@ void Simulation::EngineOf<Dim>::remove_outside() {
   if (communicator_.is_root()) note_departures(left, gone[0] + gone[1], gone[2]);
 }
 
-/// After a rebuild, now and then. When to look follows from the steps alone.
+/// At a look, now and then.
 template <int Dim>
 void Simulation::EngineOf<Dim>::watch_overlap() {
   if (step_ / kOverlapEvery == overlap_watched_at_ / kOverlapEvery) return;
   overlap_watched_at_ = step_;
+  strip_->complete_halo();
   std::vector<double> shares(static_cast<std::size_t>(strip_->num_lanes()), 0.0);
   graph_->for_each_lane(
       [&](int l) { shares[static_cast<std::size_t>(l)] = strip_->lane(l).worst_overlap().share; });
@@ -197,7 +209,7 @@ void Simulation::EngineOf<Dim>::watch_growth() {
       };
     };
     std::size_t candidates = 0;
-    for (const auto list : Lane<Dim>::kLists) candidates += lane.list(list).i.capacity();
+    candidates += lane.pairs().i.capacity();
     for (const auto side : {Lane<Dim>::Left, Lane<Dim>::Right})
       candidates += lane.band(side).across.i.capacity();
     tell(lane.store().id.capacity(), true, named("rows of particles and ghosts"));
@@ -217,11 +229,11 @@ void Simulation::EngineOf<Dim>::judge_overlap(double share) {
   const bool is_error = share > limits.overlap_error;
   if (!is_error && (has_warned_ || share <= limits.overlap_warning)) return;
   const std::string what = fmt::format(
-      "an overlap of {:.3g} of the smaller radius is beyond limits.{} = {:.3g}; {}; stiffer "
-      "contacts or a smaller time.step would help",
+      "an overlap of {:.3g} of the smaller radius is beyond limits.{} = {:.3g}; {}; a higher "
+      "limit lets the run go on, from a checkpoint too; stiffer contacts need a run from the start",
       share, is_error ? "overlap_error" : "overlap_warning",
       is_error ? limits.overlap_error : limits.overlap_warning, describe_worst_overlap());
-  if (is_error) throw AgreedError(fmt::format("at step {} {}", step_, what));
+  if (is_error) throw AgreedError(fmt::format("at step {} {}", step_, what), true);
   has_warned_ = true;
   if (communicator_.is_root()) note(what, true);
 }

@@ -28,8 +28,8 @@ std::size_t bytes_of_lane(const Model& model, const ParticleSet& set) {
   const double skin = model.search.skin.value_or(default_skin(set));
   World<Dim> world;
   set_up(world, model,
-         {skin, search_reach(set, skin), static_cast<std::int64_t>(set.particles.size()),
-          !set.bonds.empty()},
+         {skin, search_reach(model, set, skin), static_cast<std::int64_t>(set.particles.size()),
+          !set.bonds.empty(), force_grain(model, set)},
          vector_width("auto"));
   Lane<Dim> lane(world);
   const std::vector<double> lengths(set.bonds.size(), 0.0);  // take the same room

@@ -31,6 +31,7 @@ struct RunOptions {
   Progress progress = Progress::Poll;
   std::optional<ContactSearchKind> search;  ///< instead of the deck's
   std::string vector = "auto";              ///< scalar, avx2, avx512 or the widest possible
+  bool tune_skin = true;               ///< look for the fastest skin, where the deck gives none
   bool trace = false;                  ///< record tasks and messages; see Simulation::write_trace
   std::size_t trace_events = 1 << 17;  ///< the latest events that each thread keeps
   std::shared_ptr<Tape> tape;          ///< records all messages; played by exchange "replay"
@@ -38,6 +39,7 @@ struct RunOptions {
   std::uint64_t delay_seed = 0;
   int ranks_per_node = 0;  ///< tests: this many ranks in a row count as a node; 0: the real nodes
   LossFault loss;          ///< tests
+  int rebuild_every = 0;   ///< tests: also rebuild at multiples of it
 };
 
 }  // namespace barchan

@@ -104,7 +104,10 @@ std::int64_t Simulation::run(std::int64_t num_steps) {
   return between_steps("run").run(num_steps);
 }
 bool Simulation::stopped() const {
-  return engine().stopped_;
+  return engine().stopped_ || engine().is_over_;
+}
+bool Simulation::is_over() const {
+  return engine().is_over_;
 }
 std::int64_t Simulation::step() const {
   return engine().step_;
@@ -129,6 +132,9 @@ const Communicator& Simulation::communicator() const {
 }
 void Simulation::for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const {
   engine().for_each_owned(visit);
+}
+void Simulation::for_each_bond(const BondVisitor& visit) {
+  between_steps("for_each_bond").for_each_bond(visit);
 }
 std::int64_t Simulation::num_owned() const {
   return engine().num_owned();
@@ -200,6 +206,10 @@ void Simulation::write_trace(const std::string& path) const {
 }
 double Simulation::skin() const {
   return engine().skin();
+}
+
+double Simulation::force_grain() const {
+  return engine_->force_grain();
 }
 std::size_t Simulation::memory_bytes() const {
   return engine().memory_bytes();

@@ -28,6 +28,8 @@ struct OwnedParticle {
   Vec3 position, velocity, omega;
 };
 
+using BondVisitor = std::function<void(const BondData&, const Vec3& a, const Vec3& b)>;
+
 /// Times of one kind of communication on this rank [s].
 struct CommunicationTime {
   double in_flight = 0.0;  ///< messages were under way
@@ -95,7 +97,8 @@ class Simulation {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  /// Advances by at most `num_steps`; fewer when a stop was requested. @return steps done
+  /// Advances by at most `num_steps`; fewer when a stop was requested or the last stage ends.
+  /// @return steps done
   /// Errors: AgreedError, the same on every rank and between two steps: a particle left a domain
   /// that it may not leave, an overlap is beyond the limit, a particle or wall moved farther than
   /// half the skin between rebuilds, particles, contacts or bonds are missing. RunError on one rank
@@ -108,8 +111,9 @@ class Simulation {
   /// Ends the run() of this process that is under way, or else its next one, on all ranks and
   /// within a few steps; then the request is forgotten. Callable from a signal handler.
   static void request_stop() noexcept;
-  /// All ranks agreed to stop the last run(); the next one continues.
+  /// All ranks agreed to stop the last run(), and the next one continues; or is_over().
   [[nodiscard]] bool stopped() const;
+  [[nodiscard]] bool is_over() const;  ///< the last stage has ended, and with it the run
 
   [[nodiscard]] std::int64_t step() const;
   [[nodiscard]] double time() const;  ///< [s]
@@ -119,8 +123,11 @@ class Simulation {
   [[nodiscard]] std::string vector_width() const;   ///< in use
   [[nodiscard]] const Communicator& communicator() const;
 
-  /// Calls `visit` for every particle that this rank owns, in canonical order.
+  /// Calls `visit` for every particle that this rank owns, in any order.
   void for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const;
+  /// Calls `visit` for every whole bond, on one rank each, with the positions of its ends; that of
+  /// b by the image nearest to a. Collective.
+  void for_each_bond(const BondVisitor& visit);
   [[nodiscard]] std::int64_t num_owned() const;
   [[nodiscard]] std::int64_t num_particles() const;     ///< on all ranks, now
   [[nodiscard]] const LeftDomain& left_domain() const;  ///< on all ranks; local
@@ -169,6 +176,7 @@ class Simulation {
   /// @pre RunOptions::trace. Errors: RunError when the file cannot be written.
   void write_trace(const std::string& path) const;
   [[nodiscard]] double skin() const;
+  [[nodiscard]] double force_grain() const;        ///< of this run [N], see ForceGrain
   [[nodiscard]] std::size_t memory_bytes() const;  ///< particles, lists, history of this rank
 
  private:

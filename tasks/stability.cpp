@@ -145,13 +145,15 @@ Vec3 between(const Domain& domain, const Vec3& a, const Vec3& b) {
   return d;
 }
 
-void add_bond(const Model& model, const BondLaw& law, const ParticleData& a, const ParticleData& b,
-              Bonded& of_a, Bonded& of_b) {
+void add_bond(const Model& model, const BondData& bond, const ParticleData& a,
+              const ParticleData& b, Bonded& of_a, Bonded& of_b) {
+  const BondLaw& law = model.bond_laws[static_cast<std::size_t>(bond.law)];
   const Vec3 d = between(model.domain, a.position, b.position);
   const double length = d.norm();
   const double inverse = 1.0 / mass_of(a, model.dimension) + 1.0 / mass_of(b, model.dimension);
   if (!(length > 0.0) || !(inverse > 0.0)) return;
-  const BondSection s = section_of(model, law, length, a.radius, b.radius);
+  const double unstressed = bond.length > 0.0 ? bond.length : length;
+  const BondSection s = section_of(model, law, unstressed, a.radius, b.radius);
   const double gain = spin_gain(model.dimension);
   const double turning = gain * (1.0 / (mass_of(a, model.dimension) * a.radius * a.radius) +
                                  1.0 / (mass_of(b, model.dimension) * b.radius * b.radius));
@@ -188,8 +190,7 @@ void add_bonds(const Model& model, const ParticleSet& set, Limits& limits) {
   std::map<std::size_t, Bonded> bonded;
   for (const BondData& bond : set.bonds) {
     const std::size_t a = find(bond.id_a), b = find(bond.id_b);
-    add_bond(model, model.bond_laws[static_cast<std::size_t>(bond.law)], set.particles[a],
-             set.particles[b], bonded[a], bonded[b]);
+    add_bond(model, bond, set.particles[a], set.particles[b], bonded[a], bonded[b]);
   }
   const auto add = [&](const Bonded& p, const std::string& law) {
     limits.add("bond " + law + ", stretching",
@@ -206,21 +207,34 @@ void add_bonds(const Model& model, const ParticleSet& set, Limits& limits) {
   }
 }
 
+/// A plate moves against all that touches it, each particle against the plate. With n equal contacts
+/// the fastest of their motions is that of a mass 1/(n/M + 1/m) on one contact's spring.
+void add_plate(const Model& model, const WallSpec& plate, double num_touching, std::size_t material,
+               double inverse_mass, Limits& limits) {
+  const ContactConstants& law = model.contacts.at(static_cast<int>(material), plate.material);
+  const double m = 1.0 / (num_touching / plate.mass + inverse_mass);
+  const double c = coefficient(law.cn, 1.0 / (1.0 / plate.mass + inverse_mass));
+  limits.add(fmt::format("plate {} on {:.0f} of {}", plate.name, num_touching,
+                         model.materials[material].name),
+             stable_step(m, law.kn, c));
+}
+
+/// As many particles as fit side by side on both faces of a plate, if there are so many.
 void add_plates(const Model& model, const ParticleSet& set, const std::vector<Lightest>& lightest,
                 Limits& limits) {
-  double mean = 0.0;
-  for (const ParticleData& p : set.particles)
-    mean += p.radius / static_cast<double>(set.particles.size());
+  std::vector<double> counts(model.materials.size(), 0.0), radii(model.materials.size(), 0.0);
+  for (const ParticleData& p : set.particles) {
+    counts[static_cast<std::size_t>(p.type)] += 1.0;
+    radii[static_cast<std::size_t>(p.type)] += p.radius;
+  }
   for (const WallSpec& wall : model.walls) {
     if (!wall.is_loaded || !(wall.mass > 0.0)) continue;
-    const double along = wall.width / (2.0 * mean);
-    const double across = model.dimension == 3 ? wall.depth / (2.0 * mean) : 1.0;
-    const double touching = std::max(1.0, along) * std::max(1.0, across);
     for (std::size_t a = 0; a < model.materials.size(); ++a) {
-      if (!(lightest[a].first > 0.0)) continue;
-      const ContactConstants& law = model.contacts.at(static_cast<int>(a), wall.material);
-      const double c = touching * coefficient(law.cn, 1.0 / lightest[a].first) + wall.damping;
-      limits.add("plate " + wall.name, stable_step(wall.mass, touching * law.kn, c));
+      if (counts[a] == 0.0) continue;
+      const double width = 2.0 * radii[a] / counts[a];
+      const double across = model.dimension == 3 ? std::floor(wall.depth / width) + 1.0 : 1.0;
+      const double fit = 2.0 * (std::floor(wall.width / width) + 1.0) * across;
+      add_plate(model, wall, std::min(counts[a], fit), a, lightest[a].first, limits);
     }
   }
 }

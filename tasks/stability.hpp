@@ -27,7 +27,8 @@ struct StepLimit {
 ///   c: hence kAdvisedShare.
 /// - "bond": every particle with all of its bonds, its partners moving against it, exact for a pair
 ///   and for a long chain; stretching, shearing (with rotation) and bending separately.
-/// - "plate": a loaded plate on as many particles as fit under it side by side.
+/// - "plate": a loaded plate and what touches it: as many particles of a material as fit side by
+///   side on both of its faces, each moving against the plate.
 /// @param particles  fixed ones count as infinitely heavy
 /// Pure. Same on every rank.
 std::vector<StepLimit> step_limits(const Model& model, const ParticleSet& particles);

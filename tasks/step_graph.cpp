@@ -127,7 +127,7 @@ void StepGraph<Dim>::require_all_bands() {
   bool is_stopped = false;
   for (int l = 0; l < strip_.num_lanes(); ++l) {
     for (const Side side : kSides) num_bands += has_band(l, side) ? num_steps_ : 0;
-    is_stopped = is_stopped || strip_.lane(l).is_fast();
+    is_stopped = is_stopped || strip_.lane(l).must_stop();
   }
   const int done = bands_done_.exchange(0);
   if (done == num_bands || is_stopped) return;
@@ -174,7 +174,11 @@ void StepGraph<Dim>::run_chunk(int l, int chunk) {
   const std::int64_t begin = now_ns();
   Lane<Dim>& lane = strip_.lane(l);
   maybe_delay();
-  if (chunk == 0) lane.begin_step(frame_);
+  if (chunk == 0) {
+    StepFrame frame = frame_;
+    frame.step += nodes.step;
+    lane.begin_step(frame);
+  }
   lane.run_chunk(chunk);
   const std::int64_t end = now_ns();
   nodes.chunk_ns += end - begin;
@@ -252,7 +256,7 @@ template <int Dim>
 void StepGraph<Dim>::end_step(int l) {
   LaneNodes& nodes = nodes_[static_cast<std::size_t>(l)];
   strip_.end_step(l);
-  if (++nodes.step < num_steps_ && !strip_.lane(l).is_fast()) put(*nodes.chunk, 0);
+  if (++nodes.step < num_steps_ && !strip_.lane(l).must_stop()) put(*nodes.chunk, 0);
 }
 
 template <int Dim>

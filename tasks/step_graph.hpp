@@ -69,7 +69,7 @@ class StepGraph {
   StepGraph(Strip<Dim>& strip, const RunOptions& options);
 
   /// Steps on all lanes. @return when all lanes are done and the next halo is on its way. A lane
-  /// that is_fast() goes no further, nor do others that then wait for it.
+  /// that must_stop() goes no further, nor do others that then wait for it.
   /// @param num_steps  without neighbours any number, else 1
   void run(const StepFrame& frame, int num_steps = 1);
   /// How many of the steps of the last run a lane did.

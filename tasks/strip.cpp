@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -50,13 +51,9 @@ auto Strip<Dim>::inbox(int l, Side side) const -> const Bytes& {
 template <int Dim>
 void Strip<Dim>::place_bands() {
   for (int l = 0; l < num_lanes(); ++l) {
-    const int place = first_lane() + l;
     for (const Side side : kSides) {
       Band& band = lane(l).band(in_core<Dim>(side));
       band.exists = has_neighbour(l, side);
-      // Ghosts come first where the neighbour lies lower in the grid: always on the left, but
-      // around the end.
-      band.ghosts_first = side == Side::Left ? place > 0 : place + 1 == total_lanes();
       band.returns = returns_ && is_remote(l, side);
     }
   }
@@ -174,6 +171,21 @@ std::int64_t Strip<Dim>::num_owned() const {
   std::int64_t n = 0;
   for (const auto& lane : lanes_) n += lane->store().num_owned;
   return n;
+}
+
+template <int Dim>
+std::pair<double, double> Strip<Dim>::extent() const {
+  if (num_owned() == 0) return {0.0, 0.0};
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  std::pair<double, double> extent{kFar, -kFar};
+  for (const auto& lane : lanes_) {
+    const auto& store = lane->store();
+    for (std::int32_t i = 0; i < store.num_owned; ++i) {
+      const double at = world_.grid.along_strips(store.x(i));
+      extent = {std::min(extent.first, at), std::max(extent.second, at)};
+    }
+  }
+  return extent;
 }
 
 template <int Dim>

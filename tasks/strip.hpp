@@ -54,11 +54,11 @@ class Strip {
   void seed(const ParticleSet& set);
 
   /// Instead of seed: the state of a checkpoint, between steps. Collective.
-  /// @param shares  one for each lane of this rank: particles whose last rebuild left them between
-  /// its cuts, and all that has an end among them
+  /// @param shares  one for each lane of this rank: particles between its cuts, and all that has an
+  /// end among them
   void restore(std::vector<int> cuts, std::span<const CheckpointShare> shares);
 
-  /// Migration, canonical order, ghosts, lists, history. Collective; leaves ghosts up to date.
+  /// Migration, order by cells, ghosts, lists, history. Collective; leaves ghosts up to date.
   /// @param parallel  runs a function for every lane, on as many threads as there are
   using ForEachLane = std::function<void(const std::function<void(int)>&)>;
   void rebuild(const ForEachLane& parallel);
@@ -110,6 +110,8 @@ class Strip {
   void set_trace(Trace* trace) { trace_ = trace; }
   [[nodiscard]] const Neighbours& neighbours() const { return neighbours_; }
   [[nodiscard]] std::int64_t num_owned() const;
+  /// Where this rank's particles lie along the strip axis, least and most [m]; zeros without any.
+  [[nodiscard]] std::pair<double, double> extent() const;
   [[nodiscard]] std::int64_t num_rebuilds() const { return num_rebuilds_; }
   /// Particles that left this rank.
   [[nodiscard]] std::int64_t num_migrations() const { return num_migrations_; }
@@ -154,7 +156,6 @@ class Strip {
   /// Sends the outermost posts. bulk() gives what came, from a rank or a lane; empty: none came.
   void begin_bulk();
   [[nodiscard]] std::span<const std::byte> bulk(int l, Side side) const;
-  void refresh_ghosts();
   [[nodiscard]] int first_lane() const { return communicator_.rank() * num_lanes(); }
   [[nodiscard]] int total_lanes() const { return communicator_.size() * num_lanes(); }
   template <class Pack>

@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include <barchan/comm/strips.hpp>
+#include <barchan/core/generators/close_pairs.hpp>
 #include <barchan/core/grid.hpp>
 #include <barchan/tasks/stability.hpp>
 
@@ -12,20 +13,28 @@ namespace barchan {
 namespace {
 
 constexpr double kBondStretch = 1.1;
+constexpr double kAboutTouching = 1.01;
 
-double longest_bond(const ParticleSet& set) {
+/// Of a bond between particles that about touch, the sum of their radii; its stretch covers the
+/// rest.
+double longest_bond(const Model& model, const ParticleSet& set) {
   if (set.bonds.empty()) return 0.0;
-  std::unordered_map<std::int64_t, double> radii;
-  for (const ParticleData& p : set.particles) radii[p.id] = p.radius;
+  const PairSpace space{model.dimension, model.domain.lo, model.domain.hi, model.domain.periodic};
+  std::unordered_map<std::int64_t, const ParticleData*> by_id;
+  for (const ParticleData& p : set.particles) by_id[p.id] = &p;
   double longest = 0.0;
-  for (const BondData& b : set.bonds)
-    longest = std::max(longest, radii.at(b.id_a) + radii.at(b.id_b));
+  for (const BondData& bond : set.bonds) {
+    const ParticleData &a = *by_id.at(bond.id_a), &b = *by_id.at(bond.id_b);
+    const double touching = a.radius + b.radius;
+    const double apart = std::max(space.difference(a.position, b.position).norm(), bond.length);
+    longest = std::max(longest, apart <= kAboutTouching * touching ? touching : apart);
+  }
   return longest;
 }
 
 template <int Dim>
 StripPlan plan_for(const Model& model, const ParticleSet& set) {
-  const double reach = search_reach(set, model.search.skin.value_or(default_skin(set)));
+  const double reach = search_reach(model, set, model.search.skin.value_or(default_skin(set)));
   const Grid<Dim> grid(model.domain, reach, static_cast<std::int64_t>(set.particles.size()));
   StripPlan plan;
   plan.axis = grid.axis(0);
@@ -39,10 +48,10 @@ StripPlan plan_for(const Model& model, const ParticleSet& set) {
 
 }  // namespace
 
-double search_reach(const ParticleSet& particles, double skin) {
+double search_reach(const Model& model, const ParticleSet& particles, double skin) {
   double largest = 0.0;
   for (const ParticleData& p : particles.particles) largest = std::max(largest, p.radius);
-  return std::max(2.0 * largest, kBondStretch * longest_bond(particles)) + skin;
+  return std::max(2.0 * largest, kBondStretch * longest_bond(model, particles)) + skin;
 }
 
 int StripPlan::most_ranks() const {

@@ -12,7 +12,7 @@ inline constexpr int kMinSlabs = 2;
 
 /// Reach of the contact search [m]: two of the largest particles, or the longest bond with a tenth
 /// of stretch, and the skin.
-[[nodiscard]] double search_reach(const ParticleSet& particles, double skin);
+[[nodiscard]] double search_reach(const Model& model, const ParticleSet& particles, double skin);
 
 /// How the domain is cut along its strip axis.
 struct StripPlan {

@@ -168,8 +168,8 @@ void Strip<Dim>::reserve_posts() {
     }
   }
   if (!returns_) return;
-  results_.reserve(std::max(lane(0).max_results_bytes(Lane<Dim>::Left),
-                            lane(num_lanes() - 1).max_results_bytes(Lane<Dim>::Right)) /
+  results_.reserve(std::max(lane(0).results_bytes(Lane<Dim>::Left),
+                            lane(num_lanes() - 1).results_bytes(Lane<Dim>::Right)) /
                    sizeof(double));
 }
 
@@ -204,7 +204,7 @@ std::size_t Strip<Dim>::most_halo_bytes() const {
   std::size_t most = std::max(first.halo_bytes(Lane<Dim>::Left), last.halo_bytes(Lane<Dim>::Right));
   if (returns_)
     most = std::max(
-        {most, first.max_results_bytes(Lane<Dim>::Left), last.max_results_bytes(Lane<Dim>::Right)});
+        {most, first.results_bytes(Lane<Dim>::Left), last.results_bytes(Lane<Dim>::Right)});
   return most;
 }
 

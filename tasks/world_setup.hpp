@@ -13,6 +13,7 @@ struct WorldScale {
   double skin = 0.0, reach = 0.0;  ///< [m]
   std::int64_t num_particles = 0;
   bool has_bonds = false;
+  ForceGrain grain;
 };
 
 /// Fills an empty world from a model. Pure but for the machine's vector widths.

@@ -18,7 +18,7 @@ struct Pairs {
   AlignedVector<double> spring;
 
   Pairs(Lane<Dim>& lane, bool only_touching) {
-    const PairList& list = lane.list(Lane<Dim>::Owned);
+    const PairList& list = lane.pairs();
     for (std::size_t k = 0; k < list.i.size(); ++k) {
       if (only_touching && !touches(lane.store(), list.i[k], list.j[k])) continue;
       i.push_back(list.i[k]);
@@ -50,12 +50,13 @@ struct Pairs {
     job.motion = store.motion.data();
     job.spin = store.spin.data();
     job.force = store.force.data();
-    job.i = job.row_i = i.data();
-    job.j = job.row_j = j.data();
+    job.i = i.data();
+    job.j = j.data();
     job.code = code.data();
     job.spring = spring.data();
     job.end = static_cast<std::int64_t>(i.size());
     job.dt = lane.world().dt;
+    job.rounder = lane.world().grain.rounder();
     job.box = lane.world().grid.box();
     job.laws = lane.world().laws.view();
     return job;

@@ -117,10 +117,12 @@ std::unique_ptr<Sample<Dim>> make_sample(std::int64_t count, VectorWidth width, 
   auto sample = std::make_unique<Sample<Dim>>();
   World<Dim>& world = sample->world;
   world.skin = default_skin(set);
+  world.most_travel = 0.5 * world.skin;
   world.dt = deck.model.time.step;
   world.num_particles = count;
   world.grid = Grid<Dim>(deck.model.domain, search_reach(set, world.skin), count);
   world.laws = LawTable(deck.model.contacts);
+  world.grain = force_grain(deck.model, set);
   world.kernels = make_kernels(Dim, width, world.laws, false, world.grid.box());
 
   const int slabs = world.grid.num_slabs(), cut = has_cut ? slabs / 2 : slabs;
@@ -130,9 +132,7 @@ std::unique_ptr<Sample<Dim>> make_sample(std::int64_t count, VectorWidth width, 
   const auto seed = [&](int side, int begin, int end) {
     auto lane = std::make_unique<Lane<Dim>>(world);
     if (has_cut) {
-      Band& band = lane->band(side == 0 ? Lane<Dim>::Right : Lane<Dim>::Left);
-      band.exists = true;
-      band.ghosts_first = side == 1;
+      lane->band(side == 0 ? Lane<Dim>::Right : Lane<Dim>::Left).exists = true;
     }
     const std::vector<char> bonded(parts[side].size(), 0);
     lane->seed(begin, end, parts[side], {}, {}, bonded);

@@ -5,13 +5,14 @@
 #include <vector>
 
 #include <barchan/core/checkpoint/rank_file.hpp>
+#include <barchan/core/source_record.hpp>
 
 namespace barchan {
 
 /// What a manifest says about the file of one rank.
 struct ManifestFile {
   RankFileSeal seal;
-  std::int64_t slab_begin = 0, slab_end = 0;  ///< in which its particles lay at the last rebuild
+  double lo = 0.0, hi = 0.0;  ///< where its particles lie along the strip axis, within the box [m]
   std::int64_t particles = 0, contacts = 0, wall_contacts = 0, bonds = 0;
 };
 
@@ -25,7 +26,8 @@ struct Manifest {
   double time = 0.0;  ///< [s]
   int dimension = 2;
   std::string title;
-  std::vector<ManifestFile> files;  ///< by rank
+  std::vector<ManifestFile> files;    ///< by rank
+  std::vector<SourceRecord> sources;  ///< of the particles that the run began with; may be empty
 
   [[nodiscard]] ManifestFile totals() const;
 };

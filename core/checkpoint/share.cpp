@@ -9,6 +9,7 @@
 #include <barchan/core/exact_sum.hpp>
 #include <barchan/core/layout.hpp>
 #include <barchan/core/simd/scalar.hpp>
+#include <barchan/core/wall_shape.hpp>
 
 namespace barchan {
 namespace {
@@ -65,7 +66,6 @@ void check_particles(const CheckpointShare& s, const Widths& w, const ShareLimit
   const std::size_t n = s.ids.size();
   check.require(n < static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()) - 8,
                 "too many particles in one share");
-  check.size(C::References, s.references.size(), n * w.space);
   check.size(C::Positions, s.positions.size(), n * w.space);
   check.size(C::Velocities, s.velocities.size(), n * w.space);
   check.size(C::SurfaceSpeeds, s.surface_speeds.size(), n * w.spins);
@@ -74,7 +74,7 @@ void check_particles(const CheckpointShare& s, const Widths& w, const ShareLimit
   check.size(C::Types, s.types.size(), n);
   check.size(C::Flags, s.flags.size(), n);
   if (!s.externals.empty()) check.size(C::Externals, s.externals.size(), n * w.force);
-  check.finite(C::References, s.references);
+  check.finite(C::Positions, s.positions);
   check.finite(C::Radii, s.radii);
   check.below(C::Types, s.types, limits.num_materials);
 }
@@ -87,8 +87,13 @@ void check_links(const CheckpointShare& s, const Widths& w, const ShareLimits& l
   check.size(C::ContactIds, s.contact_ids.size(), 2 * contacts);
   check.size(C::ContactSprings, s.contact_springs.size(), contacts * w.springs);
   check.size(C::WallContactWalls, s.wall_contact_walls.size(), walls);
+  check.size(C::WallContactImages, s.wall_contact_images.size(), walls * WallImage().size());
   check.size(C::WallContactSprings, s.wall_contact_springs.size(), walls * w.springs);
   check.below(C::WallContactWalls, s.wall_contact_walls, limits.num_walls);
+  const bool are_near =
+      std::all_of(s.wall_contact_images.begin(), s.wall_contact_images.end(),
+                  [](std::int32_t v) { return v > -kFarthestImage && v < kFarthestImage; });
+  check.require(are_near, "the column wall contact images has values that are out of range");
   check.size(C::BondIds, s.bond_ids.size(), 2 * bonds);
   check.size(C::BondLengths, s.bond_lengths.size(), bonds);
   check.size(C::BondStates, s.bond_states.size(), bonds * w.bond_state);
@@ -108,8 +113,6 @@ std::string name_of(CheckpointColumn column) {
       return "outruns";
     case C::Ids:
       return "ids";
-    case C::References:
-      return "references";
     case C::Positions:
       return "positions";
     case C::Velocities:
@@ -134,6 +137,8 @@ std::string name_of(CheckpointColumn column) {
       return "wall contact ids";
     case C::WallContactWalls:
       return "wall contact walls";
+    case C::WallContactImages:
+      return "wall contact images";
     case C::WallContactSprings:
       return "wall contact springs";
     case C::BondIds:

@@ -15,7 +15,6 @@ enum class CheckpointColumn : std::uint32_t {
   Outruns = 3,  ///< what the next check may still have to tell
 
   Ids = 16,  ///< of particles
-  References = 17,
   Positions = 18,
   Velocities = 19,
   SurfaceSpeeds = 20,
@@ -34,6 +33,7 @@ enum class CheckpointColumn : std::uint32_t {
   BondLaws = 38,
   BondLengths = 39,
   BondStates = 40,
+  WallContactImages = 41,
 };
 
 /// The name of a column as messages say it.
@@ -41,14 +41,11 @@ enum class CheckpointColumn : std::uint32_t {
 
 /// What a checkpoint keeps of one lane, column by column. Every contact, bond and particle of a run
 /// is in one share.
-///
-/// `references` are the positions at the last rebuild, from which order and lists follow; all
-/// other columns hold the values of now.
 struct CheckpointShare {
   std::vector<std::int64_t> ids;
-  std::vector<double> references, positions, velocities;  ///< [m], [m], [m/s]; Dim each
-  std::vector<double> surface_speeds;                     ///< u = r·omega [m/s]; 1 or 3 each
-  std::vector<double> radii, inverse_masses;              ///< [m], [1/kg]
+  std::vector<double> positions, velocities;  ///< [m], [m/s]; Dim each
+  std::vector<double> surface_speeds;         ///< u = r·omega [m/s]; 1 or 3 each
+  std::vector<double> radii, inverse_masses;  ///< [m], [1/kg]
   std::vector<std::uint8_t> types, flags;
   std::vector<double> externals;  ///< force records, or none at all
 
@@ -56,13 +53,14 @@ struct CheckpointShare {
   std::vector<double> contact_springs;    ///< from the first to the second [m]; 1 or 3 each
   std::vector<std::int64_t> wall_contact_ids;
   std::vector<std::int32_t> wall_contact_walls;
+  std::vector<std::int32_t> wall_contact_images;  ///< three each
   std::vector<double> wall_contact_springs;
   std::vector<std::int64_t> bond_ids;  ///< two each, the lower one first; intact bonds
   std::vector<std::int32_t> bond_laws;
   std::vector<double> bond_lengths, bond_states;
 
   std::vector<std::int64_t> totals;
-  std::vector<double> outruns;  ///< one a lane: largest squared travel before its last rebuild [m²]
+  std::vector<double> outruns;  ///< one a lane: squared travel with its lists over half the skin's
 
   void clear();
 };
@@ -74,7 +72,6 @@ void for_each_column(Share& share, Visit&& visit) {
   visit(C::Totals, share.totals);
   visit(C::Outruns, share.outruns);
   visit(C::Ids, share.ids);
-  visit(C::References, share.references);
   visit(C::Positions, share.positions);
   visit(C::Velocities, share.velocities);
   visit(C::SurfaceSpeeds, share.surface_speeds);
@@ -87,6 +84,7 @@ void for_each_column(Share& share, Visit&& visit) {
   visit(C::ContactSprings, share.contact_springs);
   visit(C::WallContactIds, share.wall_contact_ids);
   visit(C::WallContactWalls, share.wall_contact_walls);
+  visit(C::WallContactImages, share.wall_contact_images);
   visit(C::WallContactSprings, share.wall_contact_springs);
   visit(C::BondIds, share.bond_ids);
   visit(C::BondLaws, share.bond_laws);

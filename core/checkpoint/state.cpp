@@ -11,10 +11,9 @@
 namespace barchan {
 namespace {
 
-constexpr std::array<std::string_view, 9> kParts{
+constexpr std::array<std::string_view, 8> kParts{
     "dimension and domain", "time.step", "gravity", "material",
-    "contact and pair",     "bond",      "wall",    "stage",
-    "search.skin"};
+    "contact and pair",     "bond",      "wall",    "stage"};
 
 [[noreturn]] void refuse(const std::string& file, const std::string& what,
                          const std::string& remedy) {
@@ -28,22 +27,16 @@ CheckpointState take_state(ByteReader& in) {
   s.stage = in.take<std::int32_t>();
   s.skin = in.take<double>();
   s.reach = in.take<double>();
+  s.grain = in.take<double>();
   s.start_particles = in.take<std::int64_t>();
   s.has_bonds = in.take<std::uint8_t>() != 0;
   s.num_particles = in.take<std::int64_t>();
-  s.check_step = in.take<std::int64_t>();
-  s.interval = in.take<std::int32_t>();
-  s.has_check = in.take<std::uint8_t>() != 0;
-  s.check = in.take<std::array<double, 4>>();
-  s.check_particles = in.take<std::int64_t>();
+  s.look_step = in.take<std::int64_t>();
+  s.look_outside = in.take<std::int64_t>();
+  s.look_overlap = in.take<double>();
   for (std::int64_t* count :
        {&s.left_particles, &s.left_contacts, &s.left_wall_contacts, &s.left_bonds})
     *count = in.take<std::int64_t>();
-  const auto num_forces = in.take<std::uint32_t>();
-  for (std::uint32_t f = 0; f < num_forces; ++f) {
-    const auto of_step = in.take<std::int64_t>();
-    s.plate_forces.push_back({of_step, in.take_counted<std::int64_t>()});
-  }
   s.walls = in.take_counted<SavedWall>();
   s.fingerprint = in.take_counted<std::uint64_t>();
   in.finish();
@@ -107,22 +100,16 @@ std::vector<std::byte> encode(const CheckpointState& s) {
   out.put(s.stage);
   out.put(s.skin);
   out.put(s.reach);
+  out.put(s.grain);
   out.put(s.start_particles);
   out.put(static_cast<std::uint8_t>(s.has_bonds));
   out.put(s.num_particles);
-  out.put(s.check_step);
-  out.put(s.interval);
-  out.put(static_cast<std::uint8_t>(s.has_check));
-  out.put(s.check);
-  out.put(s.check_particles);
+  out.put(s.look_step);
+  out.put(s.look_outside);
+  out.put(s.look_overlap);
   for (const std::int64_t count :
        {s.left_particles, s.left_contacts, s.left_wall_contacts, s.left_bonds})
     out.put(count);
-  out.put(static_cast<std::uint32_t>(s.plate_forces.size()));
-  for (const SavedPlateForces& f : s.plate_forces) {
-    out.put(f.of_step);
-    out.put_counted(f.digits);
-  }
   out.put_counted(s.walls);
   out.put_counted(s.fingerprint);
   return bytes;
@@ -140,8 +127,9 @@ CheckpointState decode_state(std::span<const std::byte> bytes, const std::string
   const bool is_sane = state.step >= 0 && state.stage >= 0 && state.stage_begin >= 0 &&
                        state.stage_begin <= state.step && state.skin >= 0.0 &&
                        std::isfinite(state.skin) && positive(state.reach) &&
-                       state.start_particles >= 0 && state.interval >= 0 && state.interval < 1024 &&
-                       state.check_step >= 0 && std::abs(state.check_step - state.step) < 1024;
+                       state.start_particles >= 0 && positive(state.grain) &&
+                       state.look_step >= -1 && state.look_step <= state.step &&
+                       (state.look_step < 0 || state.step - state.look_step < 16);
   if (!is_sane) refuse(file, "the state is not valid", "take another checkpoint");
   return state;
 }
@@ -165,12 +153,11 @@ std::vector<std::uint64_t> fingerprint(const Model& model) {
       hash_of([&](ByteWriter& out) { put_walls(out, model.walls); }),
       hash_of([&](ByteWriter& out) {
         for (const Stage& s : model.stages) {
-          for (const double value : {s.local_damping, s.max_time, s.kinetic_ratio}) out.put(value);
+          out.put(s.local_damping);
+          if (&s == &model.stages.back()) break;  // its end is that of the run, which may change
+          out.put(s.max_time);
+          out.put(s.kinetic_ratio);
         }
-      }),
-      hash_of([&](ByteWriter& out) {
-        out.put(static_cast<std::uint8_t>(model.search.skin.has_value()));
-        out.put(model.search.skin.value_or(0.0));
       }),
   };
 }

@@ -13,15 +13,9 @@ namespace barchan {
 
 /// A wall as a checkpoint keeps it.
 struct SavedWall {
-  double point[3], velocity[3], point_at_rebuild[3];
+  double point[3], velocity[3];
   double force[3], torque[3], work;  ///< as last measured
   double is_active;
-};
-
-/// Forces on loaded plates, summed over all ranks, that a step is still to use.
-struct SavedPlateForces {
-  std::int64_t of_step = -1;
-  std::vector<std::int64_t> digits;
 };
 
 /// What a checkpoint keeps beside particles, contacts and bonds; the same on all ranks.
@@ -31,21 +25,19 @@ struct CheckpointState {
 
   // What the particles of the start determined, and all lists with it.
   double skin = 0.0, reach = 0.0;  ///< [m]
+  double grain = 1.0;              ///< of forces [N]
   std::int64_t start_particles = 0;
   bool has_bonds = false;
   std::int64_t num_particles = 0;  ///< now
 
-  // When lists are rebuilt; a check that is still to be answered.
-  std::int64_t check_step = 0;
-  std::int32_t interval = 0;
-  bool has_check = false;
-  std::array<double, 4> check{};
-  std::int64_t check_particles = 0;
+  // A look at the whole domain that is still to be answered.
+  std::int64_t look_step = -1;    ///< -1: there is none
+  std::int64_t look_outside = 0;  ///< id of a particle
+  double look_overlap = 0.0;      ///< share of the smaller radius
 
   // What left the domain since the start, and the links that went with it.
   std::int64_t left_particles = 0, left_contacts = 0, left_wall_contacts = 0, left_bonds = 0;
 
-  std::vector<SavedPlateForces> plate_forces;
   std::vector<SavedWall> walls;
   std::vector<std::uint64_t> fingerprint;  ///< of the model, see below
 };

@@ -13,7 +13,9 @@ namespace {
 
 constexpr std::size_t kMaxWord = 64;  // longer words are nobody's misspelling
 
-/// Optimal string alignment distance (a swap of neighbours counts one).
+}  // namespace
+
+/// Optimal string alignment distance.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
   for (std::size_t j = 0; j <= b.size(); ++j) last[j] = j;
@@ -30,8 +32,6 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   }
   return last[b.size()];
 }
-
-}  // namespace
 
 std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates) {
   if (word.size() > kMaxWord) return {};

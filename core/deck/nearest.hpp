@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string>
 #include <string_view>
 
 namespace barchan::deck {
+
+/// Letters to change, add, drop, or swap with the next one, to make one word from the other.
+[[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
 
 /// The candidate that needs the fewest letters changed, added, dropped or swapped; empty when none
 /// comes close.

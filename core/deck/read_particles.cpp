@@ -7,9 +7,12 @@
 #include <fmt/format.h>
 
 #include <barchan/core/deck/boxes.hpp>
+#include <barchan/core/deck/canonical.hpp>
+#include <barchan/core/deck/read_links.hpp>
 #include <barchan/core/deck/read_regions.hpp>
 #include <barchan/core/deck/readers.hpp>
 #include <barchan/core/deck/values.hpp>
+#include <barchan/core/io/particle_file.hpp>
 
 namespace barchan::deck {
 
@@ -22,16 +25,16 @@ constexpr std::int64_t kMaxRing = 1'000'000;
 FileSource read_file_source(const TableReader& table, const DeckDraft& draft) {
   const std::string text = table.string("path");
   const std::filesystem::path path(text);
-  FileSource source;
-  if (path.extension() == ".csv") {
-    source.format = FileSource::Format::Csv;
-  } else if (path.extension() == ".data") {
-    source.format = FileSource::Format::LammpsData;
-  } else {
+  const auto format = particle_format(text);
+  if (!format)
     table.fail("path", fmt::format("'{}' does not say what kind of file it is", text),
-               "name a .csv with a header, or LAMMPS data that ends in .data");
-  }
+               std::string("name a file that ends in ") + kParticleEndings);
+  FileSource source;
   source.path = path.is_absolute() ? text : (std::filesystem::path(draft.folder) / path).string();
+  source.has_sphere_density = table.string("data_density") == "sphere";
+  if (table.has("data_density") && (table.dimension() != 2 || format != ParticleFormat::LammpsData))
+    table.fail("data_density", "data_density where densities have one meaning",
+               "it is for LAMMPS data in 2D");
   return source;
 }
 
@@ -131,6 +134,7 @@ ParticleSource read_common(const TableReader& table, const DeckDraft& draft,
   source.omega = table.spin("omega");
   if (const auto bond = table.optional_string("bond"))
     source.bond = draft.bonds.at(*bond, table.place("bond"));
+  source.links = read_links(table);
   source.fixed = read_fixed(table);
   return source;
 }
@@ -157,6 +161,7 @@ void read_particles(const TableReader& root, DeckDraft& draft) {
     const std::string kind = read_kind(*node);
     const TableReader table(*node, root.dimension(), "[[particles]]", kind);
     ParticleSource source = read_common(table, draft, kind);
+    source.record = {kind, source.place.line, canonical_keys(*node), 0};
     if (kind == "file") source.kind = read_file_source(table, draft);
     if (kind == "lattice") source.kind = read_lattice(table, draft.deck.model);
     if (kind == "packing") source.kind = read_packing(table, draft.deck.model);

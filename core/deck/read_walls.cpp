@@ -74,6 +74,7 @@ WallSpec read_wall(const TableReader& table, const DeckDraft& draft) {
   wall.point = table.vector("point");
   wall.normal = read_normal(table);
   wall.velocity = table.vector("velocity");
+  wall.place = table.place();
   if (const auto stage = table.optional_string("from_stage")) {
     wall.from_stage = draft.stages.at(*stage, table.place("from_stage"));
   }

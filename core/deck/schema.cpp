@@ -65,6 +65,8 @@ std::string type_text(const KeySpec& spec) {
       return "number > 0, [min, max] or size classes";
     case ValueType::Fixed:
       return "boolean or box";
+    case ValueType::Pairs:
+      return "array of [id, id]";
     case ValueType::Table:
       return "table";
     case ValueType::Tables:

@@ -44,6 +44,7 @@ enum class ValueType {
   Names,   ///< array of strings
   Radius,  ///< number, [min, max] or array of size classes
   Fixed,   ///< boolean or box
+  Pairs,   ///< array of [id, id]
   Table,
   Tables
 };

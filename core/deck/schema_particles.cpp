@@ -18,14 +18,23 @@ constexpr KeySpec kParticleKeys[] = {
     {"[[particles]]", "omega", T::Spin, "rad/s", "zero",
      "angular velocity at the start; added to that of a file; in 2D about z"},
     {"[[particles]]", "bond", T::String, "", "none",
-     "name of a bond law that links those of this source that touch"},
+     "name of a bond law that links those of this source that touch; of a file with bonds, the law "
+     "of them all"},
+    {"[[particles]]", "bond_gap", T::NonNegativeNumber, "m", "1e-6 of the radii's sum",
+     "gap between surfaces up to which `bond` links two particles"},
+    {"[[particles]]", "bond_pairs", T::Pairs, "", "none",
+     "ids that `bond` links, whether they touch or not, instead of those that touch"},
     {"[[particles]]", "fixed", T::Fixed, "", "false",
      "particles that never move: all of them, or those with centres in a box `{ lo = ..., hi = ... "
      "}`"},
 
     {"file", "path", T::String, "", "required",
-     "`.csv` with a header, or LAMMPS data (atom style sphere) ending in `.data`; relative to the "
-     "deck"},
+     "`.csv` or `.tsv` with a header, LAMMPS data `.data` or `.lmp`, snapshot `.vtp` or `.pvtp`, "
+     "each also as `.gz`; relative to the deck"},
+    {"file", "data_density", T::Choice, "", "sphere",
+     "what densities of LAMMPS data mean in 2D: `sphere`, mass 4/3·π·r³·density, as LAMMPS takes "
+     "them; `disk`, mass π·r²·density, as everywhere else",
+     "sphere|disk"},
 
     {"lattice", "region", T::Table, "m", "required",
      "box `{ lo = ..., hi = ... }` that holds the particles"},

@@ -19,6 +19,9 @@ void check_each(const Model& model, const ParticleData& p) {
   const auto refuse = [&](const std::string& what, const char* remedy) {
     throw InputError(at(p) + " " + what, remedy);
   };
+  const bool moves = !p.velocity.isZero(0.0) || !p.omega.isZero(0.0);
+  if (p.fixed && moves)
+    refuse("is fixed and has a velocity", "leave velocity and omega out: fixed particles stay");
   if (p.id < 1) refuse("has no valid id", "ids count from 1");
   if (!(p.position.allFinite() && p.velocity.allFinite() && p.omega.allFinite())) {
     refuse("has a position or velocity that is not finite", "give finite numbers");
@@ -57,24 +60,31 @@ bool is_less(const BondData& a, const BondData& b) {
   return a.id_a != b.id_a ? a.id_a < b.id_a : a.id_b < b.id_b;
 }
 
+void check_bond(const Model& model, const BondData& bond, std::span<const std::int64_t> ids) {
+  const auto refuse = [&](const char* what, const char* remedy) {
+    throw InputError(
+        fmt::format("the bond between particles {} and {} {}", bond.id_a, bond.id_b, what), remedy);
+  };
+  if (bond.id_a >= bond.id_b)
+    refuse("is not in order", "the lower id comes first, and the two differ");
+  const bool are_known = std::binary_search(ids.begin(), ids.end(), bond.id_a) &&
+                         std::binary_search(ids.begin(), ids.end(), bond.id_b);
+  if (!are_known) refuse("refers to an unknown particle", "both must exist");
+  if (bond.law < 0 || bond.law >= static_cast<std::int32_t>(model.bond_laws.size()))
+    refuse("is of an unknown law", "name a bond of the deck");
+  if (!(bond.length >= 0.0 && std::isfinite(bond.length) && bond.shear.allFinite() &&
+        bond.bending.allFinite() && std::isfinite(bond.twisting)))
+    refuse("has a length or force that is not a number", "give finite ones, lengths above zero");
+  const bool is_flat = bond.shear.y() == 0.0 && bond.shear.z() == 0.0 && bond.bending.x() == 0.0 &&
+                       bond.bending.y() == 0.0 && bond.twisting == 0.0;
+  if (model.dimension == 2 && !is_flat)
+    refuse("leaves the plane", "in 2D it is sheared by a force in x and bent by a moment about z");
+}
+
 std::vector<BondData> checked_bonds(const Model& model, const ParticleSet& set,
                                     std::span<const std::int64_t> ids) {
   std::vector<BondData> bonds = set.bonds;
-  for (const BondData& bond : bonds) {
-    const auto refuse = [&](const char* what, const char* remedy) {
-      throw InputError(
-          fmt::format("the bond between particles {} and {} {}", bond.id_a, bond.id_b, what),
-          remedy);
-    };
-    if (bond.id_a >= bond.id_b)
-      refuse("is not in order", "the lower id comes first, and the two differ");
-    const bool are_known = std::binary_search(ids.begin(), ids.end(), bond.id_a) &&
-                           std::binary_search(ids.begin(), ids.end(), bond.id_b);
-    if (!are_known) refuse("refers to an unknown particle", "both must exist");
-    if (bond.law < 0 || bond.law >= static_cast<std::int32_t>(model.bond_laws.size())) {
-      refuse("is of an unknown law", "name a bond of the deck");
-    }
-  }
+  for (const BondData& bond : bonds) check_bond(model, bond, ids);
   std::sort(bonds.begin(), bonds.end(), is_less);
   const auto twin = std::adjacent_find(
       bonds.begin(), bonds.end(),

@@ -7,16 +7,17 @@
 #include <fmt/format.h>
 
 #include <barchan/core/error.hpp>
-#include <barchan/core/generators/close_pairs.hpp>
+#include <barchan/core/generators/file_particles.hpp>
 #include <barchan/core/generators/lattice.hpp>
+#include <barchan/core/generators/link_bonds.hpp>
 #include <barchan/core/generators/make_particles.hpp>
 #include <barchan/core/generators/packing.hpp>
-#include <barchan/core/io/particle_file.hpp>
 
 namespace barchan {
 namespace {
 
-constexpr double kTouchGap = 1e-6;  ///< over the sum of the radii
+constexpr const char* kStays =
+    "leave velocity and omega out, or fix the box of those that stay";
 
 std::vector<Grain> make_ring(const RingSource& ring) {
   std::vector<Grain> grains;
@@ -48,6 +49,10 @@ void wrap(Vec3& position, const Domain& domain, int dimension) {
   }
 }
 
+bool moves(const ParticleData& particle) {
+  return !particle.velocity.isZero(0.0) || !particle.omega.isZero(0.0);
+}
+
 /// Appends source after source; holds the set under construction.
 class Maker {
  public:
@@ -55,15 +60,11 @@ class Maker {
 
   void add(const ParticleSource& source) {
     const std::size_t first = set_.particles.size();
+    has_own_bonds_ = false;
     std::visit([&](const auto& kind) { add_kind(source, kind); }, source.kind);
     for (std::size_t i = first; i < set_.particles.size(); ++i)
       finish_particle(set_.particles[i], source);
-    if (!source.bond) return;
-    if (std::holds_alternative<RingSource>(source.kind)) {
-      bond_ring(first, *source.bond);
-    } else {
-      bond_touching(first, *source.bond);
-    }
+    if (source.bond && !has_own_bonds_) link_bonds(model_, source, first, set_);
   }
 
   [[nodiscard]] std::size_t size() const { return set_.particles.size(); }
@@ -88,9 +89,11 @@ class Maker {
   }
 
   void add_kind(const ParticleSource& source, const FileSource& kind) {
-    ParticleFile file = kind.format == FileSource::Format::Csv ? read_particles_csv(kind.path)
-                                                               : read_particles_lammps(kind.path);
-    if (model_.dimension == 2) convert_to_areal_density(file);
+    const ParticleFile file = read_source(model_, source, kind);
+    const std::vector<std::string> notes = notes_on(model_, file);
+    set_.notes.insert(set_.notes.end(), notes.begin(), notes.end());
+    set_.bonds.insert(set_.bonds.end(), file.bonds.begin(), file.bonds.end());
+    has_own_bonds_ = file.has_bonds && source.links.pairs.empty();
     check_ids(file);
     for (std::size_t i = 0; i < file.particles.size(); ++i) add_row(source, file, i);
     for (const ParticleData& particle : file.particles) last_id_ = std::max(last_id_, particle.id);
@@ -135,6 +138,7 @@ class Maker {
     }
     particle.velocity += source.velocity;
     particle.omega += source.omega;
+    if (is_contradictory(particle, source)) refuse("is fixed and has a velocity", kStays);
     set_.particles.push_back(particle);
   }
 
@@ -155,10 +159,26 @@ class Maker {
     }
   }
 
+  [[nodiscard]] bool is_fixed(const ParticleData& particle, const ParticleSource& source) const {
+    return source.fixed && box_contains(*source.fixed, particle.position, model_.dimension);
+  }
+
+  /// Who fixes all of a source, or lists a particle in the fixed box, cannot mean a velocity. In
+  /// the box of any other source it is for those outside, or of a state that is to be frozen.
+  [[nodiscard]] bool is_contradictory(const ParticleData& particle,
+                                      const ParticleSource& source) const {
+    if (!is_fixed(particle, source) || !moves(particle)) return false;
+    return std::isinf(source.fixed->lo.x()) || std::holds_alternative<ListSource>(source.kind);
+  }
+
   void finish_particle(ParticleData& particle, const ParticleSource& source) const {
     wrap(particle.position, model_.domain, model_.dimension);
-    if (source.fixed && box_contains(*source.fixed, particle.position, model_.dimension))
-      particle.fixed = true;
+    particle.fixed = is_fixed(particle, source);
+    if (is_contradictory(particle, source)) {
+      throw InputError(source.place,
+                       fmt::format("particle {} is fixed and has a velocity", particle.id), kStays);
+    }
+    if (particle.fixed) particle.velocity = particle.omega = Vec3::Zero();
     if (is_inside(model_.domain, particle.position, model_.dimension)) return;
     throw InputError(
         source.place,
@@ -167,45 +187,10 @@ class Maker {
         "keep the source within the domain");
   }
 
-  void add_bond(const ParticleData& a, const ParticleData& b, int law) {
-    set_.bonds.push_back({std::min(a.id, b.id), std::max(a.id, b.id), law});
-  }
-
-  void bond_ring(std::size_t first, int law) {
-    const std::size_t count = set_.particles.size() - first;
-    for (std::size_t k = 0; k < count; ++k) {
-      add_bond(set_.particles[first + k], set_.particles[first + (k + 1) % count], law);
-    }
-  }
-
-  void bond_touching(std::size_t first, int law) {
-    std::vector<Grain> grains;
-    double largest = 0.0;
-    for (std::size_t i = first; i < set_.particles.size(); ++i) {
-      grains.push_back({set_.particles[i].position, set_.particles[i].radius});
-      largest = std::max(largest, set_.particles[i].radius);
-    }
-    const PairSpace space{model_.dimension, model_.domain.lo, model_.domain.hi,
-                          model_.domain.periodic};
-    const std::size_t first_bond = set_.bonds.size();
-    for_each_close_pair(space, grains, 2.0 * kTouchGap * largest,
-                        [&](std::uint32_t i, std::uint32_t j) {
-                          const double reach = grains[i].radius + grains[j].radius;
-                          if (space.difference(grains[i].position, grains[j].position).norm() <=
-                              (1.0 + kTouchGap) * reach) {
-                            add_bond(set_.particles[first + i], set_.particles[first + j], law);
-                          }
-                          return true;
-                        });
-    std::sort(set_.bonds.begin() + static_cast<std::ptrdiff_t>(first_bond), set_.bonds.end(),
-              [](const BondData& a, const BondData& b) {
-                return a.id_a != b.id_a ? a.id_a < b.id_a : a.id_b < b.id_b;
-              });
-  }
-
   const Model& model_;
   ParticleSet set_;
   std::int64_t last_id_ = 0;
+  bool has_own_bonds_ = false;  ///< the source at hand, which needs no others
 };
 
 }  // namespace

@@ -27,6 +27,9 @@ Vec3 row_of(const std::vector<double>& values, std::size_t i) {
 }
 
 void append_piece(ParticleFile& result, const VtpPiece& piece, const std::string& file) {
+  if (piece.are_lines)
+    throw InputError(SourcePlace{file, 0, 0}, "holds bonds, not particles",
+                     "give the file of the particles, whose name lacks _bonds");
   const auto& id = values_of<std::int64_t>(piece, "id", 1, file);
   const auto& type = values_of<std::int32_t>(piece, "type", 1, file);
   const auto& radius = values_of<double>(piece, "radius", 1, file);
@@ -51,23 +54,10 @@ void append_piece(ParticleFile& result, const VtpPiece& piece, const std::string
 
 }  // namespace
 
-ParticleFile read_particles_vtp(const std::string& path) {
-  ParticleFile result;
-  result.file = path;
-  if (path.ends_with(".pvtp")) {
-    for (const std::string& piece : read_pvtp(path)) append_piece(result, read_vtp(piece), piece);
-  } else {
-    append_piece(result, read_vtp(path), path);
-  }
-  check_particle_file(result);
-  return result;
-}
-
 ParticleFile parse_particles_vtp(std::string_view text, const std::string& file) {
   ParticleFile result;
   result.file = file;
   append_piece(result, parse_vtp(text, file), file);
-  check_particle_file(result);
   return result;
 }
 

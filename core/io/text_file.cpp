@@ -137,8 +137,23 @@ std::from_chars_result scan(std::string_view text, Number& value) {
   return result;
 }
 
+/// The number that it would be with a decimal point; empty when there is no decimal comma.
+std::string with_point(std::string_view text) {
+  std::string number(text);
+  const std::size_t comma = number.find(',');
+  double ignored = 0.0;
+  if (comma == std::string::npos) return {};
+  number[comma] = '.';
+  return scan(std::string_view(number), ignored).ec == std::errc{} ? number : std::string();
+}
+
 [[noreturn]] void malformed(std::string_view text, std::string_view what, const LineReader& lines,
                             const char* kind) {
+  if (const std::string number = with_point(text); !number.empty()) {
+    throw InputError(lines.place(text),
+                     std::string(what) + " is " + in_quotes(text) + ", which has a decimal comma",
+                     "write a decimal point: " + number);
+  }
   throw InputError(lines.place(text),
                    std::string(what) + " is " + in_quotes(text) + ", which is not " + kind,
                    "a number such as 1.5e-3 belongs here");
@@ -162,6 +177,17 @@ std::int64_t parse_integer(std::string_view text, std::string_view what, const L
   if (result.ec == std::errc::result_out_of_range) malformed(text, what, lines, "within 64 bits");
   if (result.ec != std::errc{}) malformed(text, what, lines, "a whole number");
   return value;
+}
+
+std::int64_t parse_whole_number(std::string_view text, std::string_view what,
+                                const LineReader& lines) {
+  constexpr double kExact = 9007199254740992.0;  // 2^53: doubles below it are spaced by one or less
+  double value = 0.0;
+  const bool is_whole = scan(text, value).ec == std::errc{} && std::fabs(value) < kExact &&
+                        value == std::trunc(value);
+  std::int64_t integer = 0;
+  if (scan(text, integer).ec == std::errc{} || !is_whole) return parse_integer(text, what, lines);
+  return static_cast<std::int64_t>(value);
 }
 
 }  // namespace barchan

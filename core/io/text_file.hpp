@@ -73,5 +73,8 @@ class LineReader {
                                   const LineReader& lines);
 [[nodiscard]] std::int64_t parse_integer(std::string_view text, std::string_view what,
                                          const LineReader& lines);
+/// The same, where programs that know no integers may have written 1.0 or 1e3.
+[[nodiscard]] std::int64_t parse_whole_number(std::string_view text, std::string_view what,
+                                              const LineReader& lines);
 
 }  // namespace barchan

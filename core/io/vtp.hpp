@@ -26,11 +26,13 @@ struct VtpField {
 
 /// What a snapshot holds, in the caller's memory. barchan writes: id (Int64), type (Int32, from 1),
 /// radius, density, velocity (3), angular_velocity (3), rank (Int32), and whatever else is named.
+/// Points are particles, or, two by two, the ends of lines: then the fields are those of the lines.
 struct VtpArrays {
   std::int64_t step = 0;
   double time = 0.0;               ///< [s]
   std::span<const double> points;  ///< x y z of every particle [m]
   std::vector<VtpField> fields;
+  bool are_lines = false;
 };
 
 /// A snapshot that has been read.
@@ -41,9 +43,10 @@ struct VtpColumn {
 };
 struct VtpPiece {
   std::int64_t step = 0;
-  double time = 0.0;           ///< [s]
-  std::vector<double> points;  ///< x y z of every particle [m]
-  std::vector<VtpColumn> columns;
+  double time = 0.0;               ///< [s]
+  std::vector<double> points;      ///< x y z of every particle, or of both ends of every line [m]
+  std::vector<VtpColumn> columns;  ///< of particles or lines
+  bool are_lines = false;
 
   /// The column of that name, null when there is none.
   [[nodiscard]] const VtpColumn* find(std::string_view name) const;
@@ -52,6 +55,7 @@ struct VtpPiece {
 struct PvdEntry {
   double time = 0.0;  ///< [s]
   std::string file;   ///< relative to the .pvd
+  int part = 0;       ///< of that time: particles first, then bonds
 };
 
 /// Each writes a whole file that appears under its name only when complete (temporary name,

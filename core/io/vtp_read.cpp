@@ -6,6 +6,7 @@
 
 #include <barchan/core/error.hpp>
 #include <barchan/core/io/base64.hpp>
+#include <barchan/core/io/gzip.hpp>
 #include <barchan/core/io/text_file.hpp>
 #include <barchan/core/io/vtp.hpp>
 #include <barchan/core/io/xml.hpp>
@@ -82,7 +83,7 @@ class PieceReader {
       if (token.name == "VTKFile") check_file(token);
       if (token.name == "Piece") read_count(token);
       if (token.name == "FieldData" || token.name == "PointData" || token.name == "Points" ||
-          token.name == "Verts") {
+          token.name == "Verts" || token.name == "CellData" || token.name == "Lines") {
         parent_ = token.name;
       }
       if (token.name == "DataArray") read_array(token);
@@ -103,6 +104,9 @@ class PieceReader {
     if (has_piece_) xml_.fail("a second piece", kOurs);
     num_points_ =
         number_from<std::uint64_t>(tag.attribute("NumberOfPoints"), "NumberOfPoints", xml_);
+    const std::string_view lines = tag.attribute("NumberOfLines");
+    num_lines_ = lines.empty() ? 0 : number_from<std::uint64_t>(lines, "NumberOfLines", xml_);
+    piece_.are_lines = num_lines_ > 0;
     has_piece_ = true;
   }
 
@@ -121,7 +125,7 @@ class PieceReader {
       if (values == nullptr || points.components != 3)
         xml_.fail("points are not three doubles each", kOurs);
       piece_.points = std::move(*values);
-    } else if (parent_ == "PointData") {
+    } else if (parent_ == (piece_.are_lines ? "CellData" : "PointData")) {
       piece_.columns.push_back(read_column(tag, text, xml_));
     }
   }
@@ -131,14 +135,17 @@ class PieceReader {
     if (piece_.points.size() / 3 != num_points_ || piece_.points.size() % 3 != 0) {
       xml_.fail("the number of points differs from NumberOfPoints", "the file is damaged");
     }
+    if (piece_.are_lines && (num_points_ % 2 != 0 || num_points_ / 2 != num_lines_))
+      xml_.fail("lines do not have two points each", kOurs);
+    const std::uint64_t num_cells = piece_.are_lines ? num_lines_ : num_points_;
     for (const VtpColumn& column : piece_.columns) {
       const std::size_t size =
           std::visit([](const auto& values) { return values.size(); }, column.values);
-      if (size / static_cast<std::size_t>(column.components) == num_points_ &&
+      if (size / static_cast<std::size_t>(column.components) == num_cells &&
           size % static_cast<std::size_t>(column.components) == 0) {
         continue;
       }
-      xml_.fail("array " + in_quotes(column.name) + " does not fit the number of points",
+      xml_.fail("array " + in_quotes(column.name) + " does not fit the number of points or lines",
                 "the file is damaged");
     }
   }
@@ -146,7 +153,7 @@ class PieceReader {
   XmlReader xml_;
   VtpPiece piece_;
   std::string_view parent_;
-  std::uint64_t num_points_ = 0;
+  std::uint64_t num_points_ = 0, num_lines_ = 0;
   bool is_polydata_ = false;
   bool has_piece_ = false;
 };
@@ -174,11 +181,11 @@ VtpPiece parse_vtp(std::string_view text, const std::string& file) {
 }
 
 VtpPiece read_vtp(const std::string& path) {
-  return parse_vtp(read_text_file(path), path);
+  return parse_vtp(read_unpacked_file(path), path);
 }
 
 std::vector<std::string> read_pvtp(const std::string& path) {
-  return parse_pvtp(read_text_file(path), path);
+  return parse_pvtp(read_unpacked_file(path), path);
 }
 
 std::vector<std::string> parse_pvtp(std::string_view text, const std::string& path) {
@@ -193,14 +200,16 @@ std::vector<std::string> parse_pvtp(std::string_view text, const std::string& pa
 }
 
 std::vector<PvdEntry> read_pvd(const std::string& path) {
-  return parse_pvd(read_text_file(path), path);
+  return parse_pvd(read_unpacked_file(path), path);
 }
 
 std::vector<PvdEntry> parse_pvd(std::string_view text, const std::string& file) {
   std::vector<PvdEntry> entries;
   for_each_tag(text, file, "DataSet", [&](const XmlToken& tag, const XmlReader& xml) {
+    const std::string_view part = tag.attribute("part");
     entries.push_back({number_from<double>(tag.attribute("timestep"), "timestep", xml),
-                       unescape_xml(tag.attribute("file"))});
+                       unescape_xml(tag.attribute("file")),
+                       part.empty() ? 0 : number_from<int>(part, "part", xml)});
   });
   return entries;
 }

@@ -81,28 +81,29 @@ void write_array(OutputFile& file, const VtpField& field) {
   end_array(file, stream);
 }
 
-/// first, first + 1, ... as the vertices of a piece need them.
+/// first, first + stride, ... as the vertices or lines of a piece need them.
 void write_counting(OutputFile& file, const std::string& name, std::int64_t first,
-                    std::size_t count) {
+                    std::int64_t stride, std::size_t count) {
   Base64File stream(file);
   begin_array(file, array_tag({name, 1, std::span<const std::int64_t>{}}), count * sizeof(first),
               stream);
   std::vector<std::int64_t> numbers(std::min<std::size_t>(count, 1 << 15));
   for (std::size_t done = 0; done < count; done += numbers.size()) {
     const std::size_t part = std::min(numbers.size(), count - done);
-    for (std::size_t i = 0; i < part; ++i) numbers[i] = first + static_cast<std::int64_t>(done + i);
+    for (std::size_t i = 0; i < part; ++i)
+      numbers[i] = first + stride * static_cast<std::int64_t>(done + i);
     stream.add({reinterpret_cast<const char*>(numbers.data()), part * sizeof(first)});
   }
   end_array(file, stream);
 }
 
-void check(const VtpArrays& arrays, std::size_t num_points) {
-  if (arrays.points.size() != 3 * num_points)
-    throw std::logic_error("vtp: points have three components");
+void check(const VtpArrays& arrays, std::size_t num_cells) {
+  if (arrays.points.size() != (arrays.are_lines ? 6 : 3) * num_cells)
+    throw std::logic_error("vtp: points have three components, and lines two points");
   for (const VtpField& field : arrays.fields) {
-    if (size_of(field.values) == num_points * static_cast<std::size_t>(field.components)) continue;
+    if (size_of(field.values) == num_cells * static_cast<std::size_t>(field.components)) continue;
     throw std::logic_error("vtp: the length of field " + field.name +
-                           " does not fit the number of points");
+                           " does not fit the number of points or lines");
   }
 }
 
@@ -114,7 +115,10 @@ constexpr const char* kHeader =
 
 void write_vtp(const std::string& path, const VtpArrays& arrays) {
   const std::size_t num_points = arrays.points.size() / 3;
-  check(arrays, num_points);
+  const std::size_t num_cells = arrays.are_lines ? num_points / 2 : num_points;
+  const char* cells = arrays.are_lines ? "Lines" : "Verts";
+  const char* data = arrays.are_lines ? "CellData" : "PointData";
+  check(arrays, num_cells);
   OutputFile file(path);
   file.write(fmt::format(fmt::runtime(kHeader), "PolyData"));
   file.write("<PolyData>\n<FieldData>\n");
@@ -123,17 +127,19 @@ void write_vtp(const std::string& path, const VtpArrays& arrays) {
       "</DataArray>\n<DataArray type=\"Int64\" Name=\"step\" NumberOfTuples=\"1\" "
       "format=\"ascii\">{}</DataArray>\n</FieldData>\n",
       arrays.time, arrays.step));
-  file.write(
-      fmt::format("<Piece NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\" NumberOfLines=\"0\" "
-                  "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<PointData>\n",
-                  num_points));
+  file.write(fmt::format(
+      "<Piece NumberOfPoints=\"{}\" NumberOfVerts=\"{}\" NumberOfLines=\"{}\" "
+      "NumberOfStrips=\"0\" NumberOfPolys=\"0\">\n<{}>\n",
+      num_points, arrays.are_lines ? 0 : num_cells, arrays.are_lines ? num_cells : 0, data));
   for (const VtpField& field : arrays.fields) write_array(file, field);
-  file.write("</PointData>\n<Points>\n");
+  file.write(fmt::format("</{}>\n<Points>\n", data));
   write_array(file, {"Points", 3, arrays.points});
-  file.write("</Points>\n<Verts>\n");
-  write_counting(file, "connectivity", 0, num_points);
-  write_counting(file, "offsets", 1, num_points);
-  file.write("</Verts>\n</Piece>\n</PolyData>\n</VTKFile>\n");
+  file.write(fmt::format("</Points>\n<{}>\n", cells));
+  write_counting(file, "connectivity", 0, 1, num_points);
+  const std::int64_t stride = arrays.are_lines ? 2 : 1;
+  write_counting(file, "offsets", stride, stride, num_cells);
+  file.write(fmt::format("</{}>\n", cells));
+  file.write("</Piece>\n</PolyData>\n</VTKFile>\n");
   file.commit();
 }
 
@@ -141,10 +147,11 @@ void write_pvtp(const std::string& path, std::span<const std::string> pieces,
                 const VtpArrays& arrays) {
   OutputFile file(path);
   file.write(fmt::format(fmt::runtime(kHeader), "PPolyData"));
-  file.write("<PPolyData GhostLevel=\"0\">\n<PPointData>\n");
+  const char* data = arrays.are_lines ? "PCellData" : "PPointData";
+  file.write(fmt::format("<PPolyData GhostLevel=\"0\">\n<{}>\n", data));
   for (const VtpField& field : arrays.fields)
     file.write("<P" + array_tag(field).substr(1) + "/>\n");
-  file.write("</PPointData>\n<PPoints>\n");
+  file.write(fmt::format("</{}>\n<PPoints>\n", data));
   file.write("<P" + array_tag({"Points", 3, arrays.points}).substr(1) + "/>\n</PPoints>\n");
   for (const std::string& piece : pieces)
     file.write("<Piece Source=\"" + escape_xml(piece) + "\"/>\n");
@@ -157,8 +164,8 @@ void write_pvd(const std::string& path, std::span<const PvdEntry> entries) {
   file.write(fmt::format(fmt::runtime(kHeader), "Collection"));
   file.write("<Collection>\n");
   for (const PvdEntry& entry : entries) {
-    file.write(fmt::format("<DataSet timestep=\"{:.17g}\" part=\"0\" file=\"{}\"/>\n", entry.time,
-                           escape_xml(entry.file)));
+    file.write(fmt::format("<DataSet timestep=\"{:.17g}\" part=\"{}\" file=\"{}\"/>\n", entry.time,
+                           entry.part, escape_xml(entry.file)));
   }
   file.write("</Collection>\n</VTKFile>\n");
   file.commit();

@@ -52,7 +52,8 @@ struct BatchAvx2 {
       return gather_rows<D>(t.rows, code);
   }
 
-  BARCHAN_INLINE const double* at(const double* base, int stride, std::int32_t i) {
+  template <class T>
+  BARCHAN_INLINE T* at(T* base, int stride, std::int32_t i) {
     return base + stride * static_cast<std::size_t>(static_cast<std::uint32_t>(i));
   }
 
@@ -117,62 +118,44 @@ struct BatchAvx2 {
     }
   }
 
-  BARCHAN_INLINE void records(const PairForce<Simd, 2>& f, Real (&r)[4]) {
-    r[0] = f.fx;
-    r[1] = f.fy;
-    r[2] = f.ft;
-    r[3] = Simd::set(0.0);
+  /// Force records [fx fy ft size] of four pairs, pair q in r[q].
+  BARCHAN_INLINE void records(const PairForce<Simd, 2>& f, Real size, Real (&r)[4]) {
+    r[0] = f.fx, r[1] = f.fy, r[2] = f.ft, r[3] = size;
     Simd::transpose(r[0], r[1], r[2], r[3]);
   }
 
-  BARCHAN_INLINE void records(const PairForce<Simd, 3>& f, Real (&r)[8]) {
-    const Real zero = Simd::set(0.0);
-    r[0] = f.fx, r[1] = f.fy, r[2] = f.fz, r[3] = zero;
-    r[4] = f.tx, r[5] = f.ty, r[6] = f.tz, r[7] = zero;
+  /// Force records [fx fy fz size | tx ty tz 0] of four pairs.
+  BARCHAN_INLINE void records(const PairForce<Simd, 3>& f, Real size, Real (&r)[8]) {
+    r[0] = f.fx, r[1] = f.fy, r[2] = f.fz, r[3] = size;
+    r[4] = f.tx, r[5] = f.ty, r[6] = f.tz, r[7] = Simd::set(0.0);
     Simd::transpose(r[0], r[1], r[2], r[3]);
     Simd::transpose(r[4], r[5], r[6], r[7]);
   }
 
-  BARCHAN_INLINE void keep(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f) {
-    Real r[4];
-    records(f, r);
-    for (int q = 0; q < 4; ++q) Simd::store(job.result + 4 * (k + q), r[q]);
-  }
-
-  BARCHAN_INLINE void keep(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f) {
-    Real r[8];
-    records(f, r);
-    for (int q = 0; q < 4; ++q) {
-      Simd::store(job.result + 8 * (k + q), r[q]);
-      Simd::store(job.result + 8 * (k + q) + 4, r[4 + q]);
-    }
-  }
-
-  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f) {
+  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f,
+                              Real size) {
     const Real sign = {-1, -1, 1, 1};
     Real r[4];
-    records(f, r);
+    records(f, size, r);
     for (int q = 0; q < 4; ++q) {
-      double* a =
-          job.force + 4 * static_cast<std::size_t>(static_cast<std::uint32_t>(job.row_i[k + q]));
+      double* a = at(job.force, 4, job.i[k + q]);
       Simd::store(a, Simd::load(a) + r[q]);
-      double* b =
-          job.force + 4 * static_cast<std::size_t>(static_cast<std::uint32_t>(job.row_j[k + q]));
+      double* b = at(job.force, 4, job.j[k + q]);
       Simd::store(b, Simd::load(b) + r[q] * sign);
     }
   }
 
-  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f) {
+  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f,
+                              Real size) {
+    const Real sign = {-1, -1, -1, 1};
     Real r[8];
-    records(f, r);
+    records(f, size, r);
     for (int q = 0; q < 4; ++q) {
-      double* a =
-          job.force + 8 * static_cast<std::size_t>(static_cast<std::uint32_t>(job.row_i[k + q]));
+      double* a = at(job.force, 8, job.i[k + q]);
       Simd::store(a, Simd::load(a) + r[q]);
       Simd::store(a + 4, Simd::load(a + 4) + r[4 + q]);
-      double* b =
-          job.force + 8 * static_cast<std::size_t>(static_cast<std::uint32_t>(job.row_j[k + q]));
-      Simd::store(b, Simd::load(b) - r[q]);
+      double* b = at(job.force, 8, job.j[k + q]);
+      Simd::store(b, Simd::load(b) + r[q] * sign);
       Simd::store(b + 4, Simd::load(b + 4) + r[4 + q]);
     }
   }

@@ -170,13 +170,12 @@ struct BatchAvx512 {
     }
   }
 
-  /// Force records [fx fy ft 0] of eight pairs, pair q in r[q].
-  BARCHAN_INLINE void records(const PairForce<Simd, 2>& f, __m256d (&r)[8]) {
-    const __m512d zero = _mm512_setzero_pd();
+  /// Force records [fx fy ft size] of eight pairs, pair q in r[q].
+  BARCHAN_INLINE void records(const PairForce<Simd, 2>& f, Real size, __m256d (&r)[8]) {
     const __m512d lo = _mm512_unpacklo_pd(__m512d(f.fx), __m512d(f.fy)),
-                  tl = _mm512_unpacklo_pd(__m512d(f.ft), zero);
+                  tl = _mm512_unpacklo_pd(__m512d(f.ft), __m512d(size));
     const __m512d hi = _mm512_unpackhi_pd(__m512d(f.fx), __m512d(f.fy)),
-                  th = _mm512_unpackhi_pd(__m512d(f.ft), zero);
+                  th = _mm512_unpackhi_pd(__m512d(f.ft), __m512d(size));
     const __m512i a = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11),
                   b = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
     const __m512d o02 = _mm512_permutex2var_pd(lo, a, tl), o13 = _mm512_permutex2var_pd(hi, a, th);
@@ -187,47 +186,37 @@ struct BatchAvx512 {
     r[5] = _mm512_castpd512_pd256(o57), r[7] = _mm512_extractf64x4_pd(o57, 1);
   }
 
-  /// Force records [fx fy fz 0 | tx ty tz 0] of eight pairs.
-  BARCHAN_INLINE void records(const PairForce<Simd, 3>& f, __m512d (&r)[8]) {
+  /// Force records [fx fy fz size | tx ty tz 0] of eight pairs.
+  BARCHAN_INLINE void records(const PairForce<Simd, 3>& f, Real size, __m512d (&r)[8]) {
     const Real zero = Simd::set(0.0);
-    const __m512d rows[8] = {__m512d(f.fx), __m512d(f.fy), __m512d(f.fz), __m512d(zero),
+    const __m512d rows[8] = {__m512d(f.fx), __m512d(f.fy), __m512d(f.fz), __m512d(size),
                              __m512d(f.tx), __m512d(f.ty), __m512d(f.tz), __m512d(zero)};
     Real o[8];
     transpose(rows, o);
     for (int q = 0; q < 8; ++q) r[q] = __m512d(o[q]);
   }
 
-  BARCHAN_INLINE void keep(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f) {
-    __m256d r[8];
-    records(f, r);
-    for (int q = 0; q < 8; ++q) _mm256_store_pd(job.result + 4 * (k + q), r[q]);
-  }
-
-  BARCHAN_INLINE void keep(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f) {
-    __m512d r[8];
-    records(f, r);
-    for (int q = 0; q < 8; ++q) _mm512_store_pd(job.result + 8 * (k + q), r[q]);
-  }
-
-  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f) {
+  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f,
+                              Real size) {
     const __m256d sign = _mm256_setr_pd(-1, -1, 1, 1);
     __m256d r[8];
-    records(f, r);
+    records(f, size, r);
     for (int q = 0; q < 8; ++q) {
-      double* a = job.force + 4 * wide(job.row_i[k + q]);
-      double* b = job.force + 4 * wide(job.row_j[k + q]);
+      double* a = job.force + 4 * wide(job.i[k + q]);
+      double* b = job.force + 4 * wide(job.j[k + q]);
       _mm256_store_pd(a, _mm256_add_pd(_mm256_load_pd(a), r[q]));
       _mm256_store_pd(b, _mm256_fmadd_pd(r[q], sign, _mm256_load_pd(b)));
     }
   }
 
-  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f) {
+  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f,
+                              Real size) {
     const __m512d sign = _mm512_setr_pd(-1, -1, -1, 1, 1, 1, 1, 1);
     __m512d r[8];
-    records(f, r);
+    records(f, size, r);
     for (int q = 0; q < 8; ++q) {
-      double* a = job.force + 8 * wide(job.row_i[k + q]);
-      double* b = job.force + 8 * wide(job.row_j[k + q]);
+      double* a = job.force + 8 * wide(job.i[k + q]);
+      double* b = job.force + 8 * wide(job.j[k + q]);
       _mm512_store_pd(a, _mm512_add_pd(_mm512_load_pd(a), r[q]));
       _mm512_store_pd(b, _mm512_fmadd_pd(r[q], sign, _mm512_load_pd(b)));
     }

@@ -65,40 +65,40 @@ struct BatchScalar {
     }
   }
 
-  static void keep(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f) {
-    double* r = job.result + 4 * k;
-    r[0] = f.fx;
-    r[1] = f.fy;
-    r[2] = f.ft;
-    r[3] = 0.0;
+  // Two numbers at a time, which every compiler has: half the loads and stores.
+  using Two = double __attribute__((vector_size(16)));
+  [[gnu::always_inline]] static void add(double* to, Two value) {
+    Two sum;
+    __builtin_memcpy(&sum, to, sizeof sum);
+    sum += value;
+    __builtin_memcpy(to, &sum, sizeof sum);
   }
 
-  static void keep(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f) {
-    const double all[8] = {f.fx, f.fy, f.fz, 0.0, f.tx, f.ty, f.tz, 0.0};
-    for (int c = 0; c < 8; ++c) job.result[8 * k + c] = all[c];
+  static void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f,
+                      double size) {
+    double* a = job.force + 4 * static_cast<std::int64_t>(job.i[k]);
+    double* b = job.force + 4 * static_cast<std::int64_t>(job.j[k]);
+    const Two force{f.fx, f.fy}, rest{f.ft, size};
+    add(a, force);
+    add(a + 2, rest);
+    add(b, -force);
+    add(b + 2, rest);
   }
 
-  static void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f) {
-    double* a = job.force + 4 * static_cast<std::int64_t>(job.row_i[k]);
-    double* b = job.force + 4 * static_cast<std::int64_t>(job.row_j[k]);
-    a[0] += f.fx;
-    a[1] += f.fy;
-    a[2] += f.ft;
-    b[0] -= f.fx;
-    b[1] -= f.fy;
-    b[2] += f.ft;
-  }
-
-  static void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f) {
-    double* a = job.force + 8 * static_cast<std::int64_t>(job.row_i[k]);
-    double* b = job.force + 8 * static_cast<std::int64_t>(job.row_j[k]);
-    const double force[3] = {f.fx, f.fy, f.fz}, torque[3] = {f.tx, f.ty, f.tz};
-    for (int c = 0; c < 3; ++c) {
-      a[c] += force[c];
-      a[4 + c] += torque[c];
-      b[c] -= force[c];
-      b[4 + c] += torque[c];
-    }
+  static void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f,
+                      double size) {
+    double* a = job.force + 8 * static_cast<std::int64_t>(job.i[k]);
+    double* b = job.force + 8 * static_cast<std::int64_t>(job.j[k]);
+    const Two force{f.fx, f.fy}, above{f.fz, size}, below{-f.fz, size}, torque{f.tx, f.ty},
+        rest{f.tz, 0.0};
+    add(a, force);
+    add(a + 2, above);
+    add(a + 4, torque);
+    add(a + 6, rest);
+    add(b, -force);
+    add(b + 2, below);
+    add(b + 4, torque);
+    add(b + 6, rest);
   }
 };
 

@@ -73,7 +73,6 @@ KernelSet make_kernels(int dim, VectorWidth width, const LawTable& laws, bool ha
   // In 2D almost every candidate of a packing touches; in 3D about half do.
   return {width,
           pick.pairs(dim, variant),
-          pick.pairs(dim, variant | kernels::kKeep),
           dim == 3 ? pick.narrow(dim, box.any()) : nullptr,
           pick.search(dim),
           pick.rows(dim, false),

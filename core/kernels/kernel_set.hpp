@@ -13,9 +13,8 @@ namespace barchan {
 /// The kernels of a run: one binary, the width chosen when it starts, the same bits at any width.
 struct KernelSet {
   VectorWidth width = VectorWidth::Scalar;
-  PairKernel pairs = nullptr;       ///< sums into rows
-  PairKernel pairs_kept = nullptr;  ///< the same, and keeps every pair's force
-  NarrowKernel narrow = nullptr;    ///< null where testing every candidate in `pairs` is cheaper
+  PairKernel pairs = nullptr;
+  NarrowKernel narrow = nullptr;  ///< null where testing every candidate in `pairs` is cheaper
   SearchKernel search = nullptr;
   RowKernel rows = nullptr;
   RowKernel rows_damped = nullptr;  ///< with local damping

@@ -13,22 +13,18 @@ struct PeriodicBox {
   [[nodiscard]] bool any() const { return inverse[0] != 0 || inverse[1] != 0 || inverse[2] != 0; }
 };
 
-/// What a pair kernel works on: pairs [begin, end), whole batches, in canonical order.
+/// What a pair kernel works on: pairs [begin, end), whole batches.
 struct PairJob {
   const double* motion = nullptr;   ///< records of all particles and ghosts (layout.hpp)
   const double* spin = nullptr;     ///< 3D
-  double* force = nullptr;          ///< summed into, in list order
-  const std::int32_t* i = nullptr;  ///< first particle of each pair, lower in canonical order
+  double* force = nullptr;          ///< summed into: exact, so that order is of no account
+  const std::int32_t* i = nullptr;  ///< first particle of each pair
   const std::int32_t* j = nullptr;
-  const std::int32_t* row_i =
-      nullptr;  ///< where its force goes: i, or a waste row while i waits for a halo
-  const std::int32_t* row_j = nullptr;
   const std::uint8_t* code = nullptr;  ///< law of each pair
   double* spring = nullptr;            ///< per batch: component by component, eight lanes each
-  double* result =
-      nullptr;  ///< if not null: the force of every pair is kept here, a force record each
   std::int64_t begin = 0, end = 0;
   double dt = 0.0;
+  double rounder = 0.0;  ///< ForceGrain::rounder()
   PeriodicBox box;
   LawView laws;
 };

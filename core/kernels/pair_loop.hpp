@@ -6,15 +6,39 @@
 namespace barchan::kernels {
 
 // The pair loop, the same for every vector width. B (batch_*.hpp) gathers records into a PairState,
-// looks constants up and scatters forces, in list order; the law is in contact_law.hpp.
+// looks constants up and scatters forces; the law is in contact_law.hpp.
 
 /// A kernel's variant: Damping in the low bits, then flags.
-enum Flags { kDamping = 3, kPeriodic = 4, kOneLaw = 8, kKeep = 16, kNumVariants = 32 };
+enum Flags { kDamping = 3, kPeriodic = 4, kOneLaw = 8, kNumVariants = 16 };
 
 template <class S>
 [[gnu::always_inline]] inline typename S::Real nearest_image(typename S::Real d, double length,
                                                              double inverse) {
   return d - S::set(length) * S::round(d * S::set(inverse));
+}
+
+/// Rounds a contribution to the grain, so that sums of it are exact (force_grain.hpp): the addition
+/// cuts off what is below the grain, the subtraction gives back what is left. Zero becomes +0.
+/// @return |fx| + |fy| (+ |fz|): no component of force or torque is larger
+template <class S>
+[[gnu::always_inline]] inline typename S::Real round_to_grain(PairForce<S, 2>& f,
+                                                              typename S::Real rounder) {
+  f.fx = (f.fx + rounder) - rounder;
+  f.fy = (f.fy + rounder) - rounder;
+  f.ft = (f.ft + rounder) - rounder;
+  return S::abs(f.fx) + S::abs(f.fy);
+}
+
+template <class S>
+[[gnu::always_inline]] inline typename S::Real round_to_grain(PairForce<S, 3>& f,
+                                                              typename S::Real rounder) {
+  f.fx = (f.fx + rounder) - rounder;
+  f.fy = (f.fy + rounder) - rounder;
+  f.fz = (f.fz + rounder) - rounder;
+  f.tx = (f.tx + rounder) - rounder;
+  f.ty = (f.ty + rounder) - rounder;
+  f.tz = (f.tz + rounder) - rounder;
+  return (S::abs(f.fx) + S::abs(f.fy)) + S::abs(f.fz);
 }
 
 template <class B, int Dim, int F>
@@ -24,7 +48,7 @@ void run_pairs(const PairJob& given) {
   using S = typename B::Simd;
   constexpr auto kDamped = static_cast<Damping>(F & kDamping);
   constexpr bool kUniform = (F & kOneLaw) != 0;
-  const auto dt = S::set(job.dt);
+  const auto dt = S::set(job.dt), rounder = S::set(job.rounder);
   const auto tables = B::template tables<kDamped, kUniform>(job.laws);
   for (std::int64_t k = job.begin; k < job.end; k += S::kWidth) {
     PairState<S, Dim> pair;
@@ -38,8 +62,8 @@ void run_pairs(const PairJob& given) {
     const auto& constants = B::template constants<kDamped, kUniform>(tables, job.code + k);
     PairForce<S, Dim> force;
     B::template respond_with_spring<kDamped, Dim>(job, k, constants, pair, dt, force);
-    if constexpr ((F & kKeep) != 0) B::keep(job, k, force);
-    B::scatter(job, k, force);
+    const auto size = round_to_grain<S>(force, rounder);
+    B::scatter(job, k, force, size);
   }
 }
 

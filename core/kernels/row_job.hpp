@@ -25,15 +25,28 @@ struct RowJob {
   double local_damping = 0.0;
   double most_speed =
       std::numeric_limits<double>::infinity();  ///< of a component of velocity [m/s]
+  double most_force = std::numeric_limits<double>::infinity();  ///< ForceGrain::most() [N]
+  const std::int64_t* id = nullptr;                             ///< of every row
+};
+
+/// A row whose sum of forces was too large to be exact.
+struct Overload {
+  std::int64_t id = 0;  ///< 0: there was none; of several the lowest
+  double force = 0.0;   ///< sum of the sizes of all contributions [N]
+  void add(const Overload& other) {
+    if (other.id != 0 && (id == 0 || other.id < id)) *this = other;
+  }
 };
 
 /// How fast rows drifted.
 struct RowSpeeds {
   double top = 0.0;        ///< upper bound [m/s]; 3D, where lists of near pairs rest on it
   bool is_beyond = false;  ///< some component is beyond the job's most_speed, or no number
+  Overload overload;
   void add(const RowSpeeds& other) {
     top = std::max(top, other.top);
     is_beyond = is_beyond || other.is_beyond;
+    overload.add(other.overload);
   }
 };
 

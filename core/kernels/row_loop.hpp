@@ -26,6 +26,13 @@ RowSpeeds advance_rows(const RowJob& job) {
   const double most = job.most_speed, any = std::numeric_limits<double>::infinity();
   const auto limit = Q::of(most, most, Dim == 3 ? most : any, any);
   auto fast = Q::beyond(zero, zero);
+  const auto force_limit = Q::of(any, any, any, job.most_force);
+  Overload overload;
+  const auto watch = [&](typename Q::Real force, std::int32_t i, const double* record) {
+    if (__builtin_expect(Q::has_any(Q::beyond(force, force_limit)), 0) &&
+        record[3] > job.most_force)
+      overload.add({job.id[i], record[3]});
+  };
   if constexpr (Dim == 2) {
     const auto gain = Q::of(k, k, turn, 0.0), drift = Q::of(job.dt, job.dt, 0.0, 0.0);
     const auto gravity = Q::of(job.gravity[0] * k, job.gravity[1] * k, 0.0, 0.0);
@@ -33,7 +40,9 @@ RowSpeeds advance_rows(const RowJob& job) {
       double *x = job.motion + 8 * static_cast<std::int64_t>(i),
              *f = job.force + 4 * static_cast<std::int64_t>(i);
       const auto v = Q::load(x + 4), im = Q::last(v);
-      const auto dv = Q::load(f) * (im * gain) + Q::where_positive(im, gravity);
+      const auto force = Q::load(f);
+      watch(force, i, f);
+      const auto dv = force * (im * gain) + Q::where_positive(im, gravity);
       const auto w = kicked<Q, Damped>(v, dv, alpha);
       fast = Q::either(fast, Q::beyond(w, limit));
       Q::store(x + 4, w);
@@ -49,7 +58,9 @@ RowSpeeds advance_rows(const RowJob& job) {
              *f = job.force + 8 * static_cast<std::int64_t>(i);
       double* u = job.spin + 4 * static_cast<std::int64_t>(i);
       const auto v = Q::load(x + 4), im = Q::last(v);
-      const auto dv = Q::load(f) * (im * gain) + Q::where_positive(im, gravity);
+      const auto force = Q::load(f);
+      watch(force, i, f);
+      const auto dv = force * (im * gain) + Q::where_positive(im, gravity);
       const auto w = kicked<Q, Damped>(v, dv, alpha);
       fast = Q::either(fast, Q::beyond(w, limit));
       Q::store(x + 4, w);
@@ -64,7 +75,7 @@ RowSpeeds advance_rows(const RowJob& job) {
   alignas(32) double speed[4];
   Q::store(speed, top);
   return {std::sqrt(speed[0] * speed[0] + speed[1] * speed[1] + speed[2] * speed[2]),
-          Q::has_any(fast)};
+          Q::has_any(fast), overload};
 }
 
 template <class Q>

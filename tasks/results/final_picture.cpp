@@ -1,6 +1,7 @@
 #include <barchan/tasks/results/final_picture.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -11,6 +12,8 @@
 
 namespace barchan {
 namespace {
+
+constexpr double kMostImages = 8.0;  ///< of a plate that are drawn, to either side
 
 struct Seen {
   double x, y, z, radius, speed;
@@ -44,11 +47,13 @@ struct Scene {
   }
 };
 
-/// The stretch of a straight line that lies in the domain's rectangle (x and `up`).
-void add_clipped(const Domain& domain, int up, Vec3 point, const Vec3& along,
-                 std::vector<PictureLine>& lines) {
-  double lo = -1e300, hi = 1e300;
+/// The stretch of a straight line, `half` to either side of a point, that lies in the domain's
+/// rectangle (x and `up`). @param clips  along which axes
+void add_clipped(const Domain& domain, int up, const std::array<bool, 3>& clips, const Vec3& point,
+                 const Vec3& along, double half, std::vector<PictureLine>& lines) {
+  double lo = -half, hi = half;
   for (const int axis : {0, up}) {
+    if (!clips[static_cast<std::size_t>(axis)]) continue;
     const double a = domain.lo[axis] - point[axis], b = domain.hi[axis] - point[axis];
     if (std::fabs(along[axis]) < 1e-12) {
       const double slack = 1e-9 * (b - a);
@@ -60,6 +65,30 @@ void add_clipped(const Domain& domain, int up, Vec3 point, const Vec3& along,
     hi = std::min(hi, std::max(t0, t1));
   }
   if (lo < hi) lines.push_back({point + lo * along, point + hi * along});
+}
+
+/// A plate and those of its images that reach into the domain.
+void add_images(const Domain& domain, int up, const Vec3& point, const Vec3& along, double half,
+                std::vector<PictureLine>& lines) {
+  const Vec3 length = domain.hi - domain.lo;
+  const auto images_along = [&](int axis) {
+    std::vector<double> shifts{0.0};
+    if (!domain.periodic[static_cast<std::size_t>(axis)]) return shifts;
+    const double home = -std::floor((point[axis] - domain.lo[axis]) / length[axis]);
+    const double reach =
+        std::min(kMostImages, std::ceil(std::fabs(along[axis]) * half / length[axis]));
+    shifts.clear();
+    for (double k = home - reach; k <= home + reach; ++k) shifts.push_back(k * length[axis]);
+    return shifts;
+  };
+  for (const double x : images_along(0)) {
+    for (const double y : images_along(up)) {
+      Vec3 image = point;
+      image.x() += x;
+      image[up] += y;
+      add_clipped(domain, up, domain.periodic, image, along, half, lines);
+    }
+  }
 }
 
 std::vector<PictureLine> wall_lines(const Simulation& simulation) {
@@ -75,12 +104,12 @@ std::vector<PictureLine> wall_lines(const Simulation& simulation) {
     along.x() = -spec.normal[up];
     along[up] = spec.normal.x();
     if (spec.kind == WallKind::Plane) {
-      add_clipped(model.domain, up, state.point, along, lines);
+      add_clipped(model.domain, up, {true, true, true}, state.point, along, 1e300, lines);
     } else {
       // An upright plate in 3D has its width along the line of sight.
       const bool is_upright = model.dimension == 3 && std::fabs(spec.normal.x()) > 0.5;
       const double half = 0.5 * (is_upright ? spec.depth : spec.width);
-      lines.push_back({state.point - half * along, state.point + half * along});
+      add_images(model.domain, up, state.point, along, half, lines);
     }
   }
   return lines;

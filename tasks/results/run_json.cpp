@@ -124,6 +124,9 @@ void add_further(const RunSummary& s, Json& json) {
   json["dimension"] = s.dimension;
   json["vector"] = s.vector;
   json["skin"] = s.skin;
+  const auto share = s.grain_of_smallest_weight();
+  json["force_grain"] = {{"newtons", s.force_grain},
+                         {"of_smallest_weight", share ? Json(*share) : Json(nullptr)}};
   json["stable_step"] =
       s.limit ? Json{{"seconds", s.limit->step}, {"limit", s.limit->what}} : Json(nullptr);
   json["max_overlap"] = s.measures.max_overlap;

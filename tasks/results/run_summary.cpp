@@ -99,6 +99,11 @@ double RunSummary::potential() const {
   return measures.elastic.value() + measures.gravitational.value();
 }
 
+std::optional<double> RunSummary::grain_of_smallest_weight() const {
+  if (!(gravity > 0.0) || !(measures.max_inverse_mass > 0.0)) return std::nullopt;
+  return force_grain * measures.max_inverse_mass / gravity;
+}
+
 RunSummary summarize(Simulation& simulation, const std::string& deck,
                      const std::optional<StepLimit>& limit, bool interrupted) {
   const Model& model = simulation.model();
@@ -127,6 +132,8 @@ RunSummary summarize(Simulation& simulation, const std::string& deck,
   summary.dt = model.time.step;
   summary.time = simulation.time();
   summary.skin = simulation.skin();
+  summary.force_grain = simulation.force_grain();
+  summary.gravity = model.gravity.norm();
   summary.limit = limit;
   summary.measures = simulation.measure();
   summary.wall_specs = model.walls;

@@ -30,6 +30,8 @@ struct RunSummary {
   std::int64_t particles = 0, steps = 0;
   double dt = 0.0, time = 0.0;  ///< [s]
   double skin = 0.0;            ///< [m]
+  double force_grain = 0.0;     ///< [N]
+  double gravity = 0.0;         ///< its size [m/s²]
   std::optional<StepLimit> limit;
   double loop_seconds = 0.0;    ///< of the slowest rank
   std::int64_t loop_steps = 0;  ///< that it took; fewer than `steps` after a restart
@@ -54,6 +56,8 @@ struct RunSummary {
   /// Share of the time in flight in which there was work to do; 1 where nothing was in flight.
   [[nodiscard]] double hidden_fraction() const;
   [[nodiscard]] double potential() const;  ///< elastic and gravitational [J]
+  /// The grain over the weight of the lightest particle that moves; none without gravity.
+  [[nodiscard]] std::optional<double> grain_of_smallest_weight() const;
 };
 
 /// Collects the numbers of all ranks. Complete on rank 0; elsewhere times and counts are those of

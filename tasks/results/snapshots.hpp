@@ -21,7 +21,8 @@ class Densities {
   std::vector<std::pair<std::int64_t, double>> others_;  ///< by id
 };
 
-/// Snapshots of a run: one piece a rank, a .pvtp a time, a .pvd in all.
+/// Snapshots of a run: one piece a rank, a .pvtp a time, a .pvd in all; where the deck has bond
+/// laws the same for bonds, in files beside those of the particles (bonds_path).
 class SnapshotWriter {
  public:
   SnapshotWriter(std::string folder, Densities densities)
@@ -32,10 +33,13 @@ class SnapshotWriter {
   /// Errors: RunError.
   void resume(const Simulation& simulation, std::int64_t every);
   /// The present state. Collective. Errors: RunError.
-  void write(const Simulation& simulation);
+  void write(Simulation& simulation);
   [[nodiscard]] std::int64_t last_step() const { return last_step_; }  ///< -1: none yet
 
  private:
+  void write_bonds(Simulation& simulation);
+  void write_whole(const std::string& name, const VtpArrays& arrays, const Simulation& simulation);
+
   std::string folder_;
   Densities densities_;
   std::vector<PvdEntry> entries_;

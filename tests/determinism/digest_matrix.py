@@ -2,7 +2,7 @@
 
 usage: digest_matrix.py BARCHAN [--full] [--list]
 
-Every run must end with the digest of one rank, one thread and scalar code. Without --full a choice of runs is made in
+Every run must end with the digest of one rank, one thread and scalar code; so must runs with other skins. Without --full a choice of runs is made in
 which every value of every option occurs, and every exchange on every number of ranks; with it, the whole matrix is run.
 All-pairs search is quadratic, so it is compared after fewer steps.
 """
@@ -24,6 +24,7 @@ RANKS = (1, 2, 3, 4)
 THREADS = (1, 2)
 SCHEDULES = ("overlap", "sequential")
 STEPS, ALL_PAIRS_STEPS = 2000, 40
+SKINS = (0.02, 0.05)  # of lists; nobody's bit
 
 # The plate comes down after a tenth of a second, so that the bonds are loaded within the 2,000 steps.
 DECKS = {
@@ -51,12 +52,12 @@ def has_width(command, width):
 
 def digest_of(command, deck, run, folder):
     """Runs a deck one way. @return its digest, or the text of the failure"""
-    ranks, threads, exchange, schedule, search, width = run
+    ranks, threads, exchange, schedule, search, width, *more = run
     steps = ALL_PAIRS_STEPS if search == "all-pairs" else STEPS
     line = ["mpirun", "--oversubscribe", "-n", str(ranks)] if ranks > 1 else []
     line += [command, "run", str(SOURCE / "examples" / f"{deck}.toml"), *DECKS[deck], "--set", "output.picture=false",
              "--steps", str(steps), "--threads", str(threads), "--exchange", exchange, "--schedule", schedule,
-             "--contact-search", search, "--vector", width, "--out", folder, "--force", "--quiet"]
+             "--contact-search", search, "--vector", width, "--out", folder, "--force", "--quiet", *more]
     try:
         done = subprocess.run(line, capture_output=True, text=True, timeout=300)
     except subprocess.TimeoutExpired:
@@ -83,6 +84,8 @@ def chosen(exchanges, widths, shift):
         runs.append((next(ranks), THREADS[turn % 2], exchange, SCHEDULES[turn // 2 % 2], "cells", widths[turn % len(widths)]))
         if number % 3 == shift % 3:
             runs.append((next(ranks), THREADS[turn % 2], exchange, SCHEDULES[turn % 2], "all-pairs", widths[turn % len(widths)]))
+    for number, skin in enumerate(SKINS):
+        runs.append((number + 1, 1, exchanges[shift], "overlap", "cells", widths[-1], "--set", f"search.skin={skin}"))
     return runs
 
 

@@ -15,6 +15,8 @@ namespace {
 void read(std::uint8_t kind, std::string_view text) {
   if (kind == 'v') {
     (void)parse_particles_vtp(text, "piece.vtp");
+  } else if (kind == 'b') {
+    (void)parse_bonds_vtp(text, "piece_bonds.vtp");
   } else if (kind == 'p') {
     (void)parse_pvtp(text, "folder/whole.pvtp");
   } else if (kind == 'd') {

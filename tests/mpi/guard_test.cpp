@@ -268,11 +268,27 @@ TEST(Watch, OverlapBeyondTheLimitEndsTheRunOnEveryRank) {
   EXPECT_EQ(warnings, is_root() ? 1 : 0);
 }
 
+TEST(Watch, AWallThatAppearsInParticlesEndsTheRunInThatStep) {
+  Scenario s = moving_walls();
+  s.model.stages = {Stage{"wait", 0.0, 0.01}, Stage{"press", 0.0}};
+  WallSpec& wall = s.model.walls.emplace_back();
+  wall.name = "blade";
+  wall.kind = WallKind::Plate;
+  wall.point = Vec3(2.025, 0.3, 0.0);
+  wall.normal = Vec3(1.0, 0.0, 0.0);
+  wall.width = 0.6;
+  wall.from_stage = 1;
+  expect_on_all_ranks(
+      error_of(s, with_threads(1)),
+      {"at step 50 wall 'blade' appears with stage 'press'", "particle ", " wall 'blade'"});
+}
+
 TEST(Watch, AWallThatOutrunsTheSkinIsNoticed) {
   Scenario s = moving_walls();
   s.num_steps = 2000;
   s.model.gravity = Vec3::Zero();
   s.model.walls.push_back(loaded_plate(0.95, 0.5, 5e4, 0.01));  // faster than any check expects
+  s.model.time.allow_unstable = true;
   expect_on_all_ranks(error_of(s, with_threads(1)), {"a particle or wall had moved", "the skin"});
 }
 

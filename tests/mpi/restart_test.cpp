@@ -39,7 +39,7 @@ class FirstRanks {
 };
 
 CheckpointSpec by_steps(std::int64_t every) {
-  return {every, 0.0, 1000};
+  return {every, 0.0, 100000};
 }
 
 /// With a skin that the fastest particles do not outrun.
@@ -66,7 +66,8 @@ std::vector<Scenario> restart_scenarios() {
           with_skin(expansion(), 0.04),
           two_particles(true),
           many_laws(3, true),
-          strips_along_y()};
+          strips_along_y(),
+          plates_at_borders()};
 }
 
 class RestartOf : public testing::TestWithParam<int> {
@@ -119,7 +120,7 @@ TEST_P(RestartOf, GivesTheSameBitsOnAnyNumberOfRanksAndThreads) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenarios, RestartOf, testing::Range(0, 13));
+INSTANTIATE_TEST_SUITE_P(Scenarios, RestartOf, testing::Range(0, 14));
 
 /// Restarts from every step of a stretch, so from before, at and after rebuilds, with and without
 /// checks in flight.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -9,7 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include <barchan/core/grid.hpp>
 #include <barchan/core/model.hpp>
+#include <barchan/core/wall_shape.hpp>
 #include <barchan/tasks/simulation.hpp>
 
 #include "model_parts.hpp"
@@ -154,6 +157,33 @@ inline Scenario moving_walls() {
   return s;
 }
 
+/// A fence that goes through one border, a loaded piston that goes through it the other way, and a
+/// shelf across it, each with ends that particles touch; all borders wrap.
+inline Scenario plates_at_borders() {
+  Scenario s = gas(2, {true, true, false}, 2.0, "plates at periodic borders");
+  const auto add = [&s](const Vec3& point, const Vec3& normal, double width) -> WallSpec& {
+    add_wall(s.model, point, normal);
+    WallSpec& w = s.model.walls.back();
+    w.kind = WallKind::Plate;
+    w.width = width;
+    return w;
+  };
+  add({3.97, 0.9, 0.0}, {0.8, 0.6, 0.0}, 0.6).velocity = Vec3(1.5, 0.5, 0.0);
+  WallSpec& piston = add({0.06, 0.5, 0.0}, {-1.0, 0.0, 0.0}, 0.4);
+  piston.is_loaded = true;
+  piston.load = 400.0;
+  piston.mass = 4.0;
+  add({3.9, 0.45, 0.0}, {0.0, 1.0, 0.0}, 0.9);
+  add({2.0, 0.02, 0.0}, {0.0, -1.0, 0.0}, 4.0).velocity = Vec3(0.0, -0.5, 0.0);
+  const PeriodicBox box = periodic_box(s.model.domain, 2);
+  std::erase_if(s.set.particles, [&](const ParticleData& p) {
+    return std::any_of(s.model.walls.begin(), s.model.walls.end(), [&](const WallSpec& w) {
+      return WallShape<2>(w, box).foot(w.point, p.position.data()).distance < 0.9 * p.radius;
+    });
+  });
+  return s;
+}
+
 inline Scenario rough_bed() {
   Scenario s{"free particles on fixed ones", plain_model(2, 4.0, 1.0), {}, 400, {}, true};
   s.model.gravity = Vec3(6.0, -9.81, 0.0);
@@ -201,6 +231,32 @@ inline Scenario breaking_plate(int dimension) {
     p.velocity[0] += 4.0;
   }
   shuffle_ids(s.set, 8);
+  return s;
+}
+
+/// Bonds across gaps, longer or shorter than their lengths and sheared from the start, as a file
+/// may have them.
+inline Scenario stressed_net(int dimension) {
+  Scenario s{"a net of stressed bonds, " + std::to_string(dimension) + "D",
+             plain_model(dimension, 4.0, 1.0),
+             {},
+             100,
+             {},
+             true};
+  s.model.bond_laws = {weak_bond(std::numeric_limits<double>::infinity())};
+  s.model.domain.periodic[0] = true;
+  add_cloud(s.set, dimension, {{0.1, 0.1, 0.1}, {3.9, 0.9, 0.9}, 0.2, 0.06, 0.5, 27});
+  bond_near(s.set, 0, s.set.particles.size(), 1.95);
+  for (std::size_t b = 0; b < s.set.bonds.size(); ++b) {
+    BondData& bond = s.set.bonds[b];
+    const auto part = static_cast<double>(b % 7);
+    bond.length = 0.19 + 0.003 * part;
+    bond.shear = Vec3(0.1 * part, 0.0, 0.0);
+    bond.bending = Vec3(0.0, 0.0, 0.002 * part);
+    if (dimension == 3) bond.twisting = 0.001 * part;
+  }
+  for (ParticleData& p : s.set.particles) p.velocity[0] += 4.0;
+  shuffle_ids(s.set, 10);
   return s;
 }
 

@@ -119,10 +119,17 @@ class RandomDeck:
         if self.plate:
             middle = [0.5 * c for c in self.size]
             is_loaded = rng.random() < 0.6
+            across = [a for a in range(self.dimension) if a != self.long_axis()]
+            extents = [4 * RADIUS for _ in across]
+            for place, a in enumerate(across):
+                if self.periodic[a]:  # maybe through the border, maybe without ends
+                    middle[a] *= rng.choice((0.0, 0.3, 1.0, 1.97))
+                    extents[place] = rng.choice((4 * RADIUS, 4 * RADIUS, 0.9 * self.size[a], self.size[a]))
+            speed = rng.choice((0.0, 0.3)) * RADIUS / (self.steps * self.step)
             self.table("[[wall]]", name='"plate"', kind='"plate"', point=self.vector(middle),
                        normal=self.vector(float(a == self.long_axis()) for a in range(3)), material=material(),
-                       width=4 * RADIUS,
-                       depth=4 * RADIUS if self.dimension == 3 else None,
+                       width=extents[0], depth=extents[1] if self.dimension == 3 else None,
+                       velocity=None if is_loaded else self.vector(speed * rng.gauss(0, 1) for _ in range(3)),
                        load=rng.uniform(0, 100) if is_loaded else None,
                        mass=20 * self.mass if is_loaded else None,
                        damping=rng.choice((0.0, 1.0)) if is_loaded else None)

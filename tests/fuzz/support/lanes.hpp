@@ -29,7 +29,6 @@ class Sample {
     lanes_[0]->band(Lane<Dim>::Right).exists = true;
     lanes_[0]->band(Lane<Dim>::Right).returns = returns;
     lanes_[1]->band(Lane<Dim>::Left).exists = true;
-    lanes_[1]->band(Lane<Dim>::Left).ghosts_first = true;
     lanes_[1]->band(Lane<Dim>::Left).returns = returns;
   }
 
@@ -107,7 +106,6 @@ class Sample {
     lane.take_ghosts({}, {});
     lane.restore_history();
     lane.cut_chunks(64);
-    lane.put_back(share);
     for (int n = 0; n < 2; ++n) {
       lane.begin_step({world_.dt, {}, 0.0});
       for (int c = 0; c < lane.num_chunks(); ++c) lane.run_chunk(c);
@@ -142,10 +140,7 @@ class Sample {
     plate.point = Vec3(3.0, 2.0, 1.0);
     plate.width = plate.depth = 1.0;
     plate.velocity = Vec3(0.0, -0.1, 0.0);
-    w.wall_specs = {floor, plate};
-    w.walls.resize(2);
-    w.walls[1].point = plate.point;
-    w.walls[1].velocity = plate.velocity;
+    w.set_walls(std::array{floor, plate});
     return w;
   }
 

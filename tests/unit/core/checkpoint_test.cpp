@@ -38,7 +38,7 @@ CheckpointShare some_share(int num_particles, std::int64_t first_id) {
   const auto number = [&random] { return static_cast<double>(random() % 1000) * 0.001 - 0.3; };
   for (int p = 0; p < num_particles; ++p) {
     s.ids.push_back(first_id + p);
-    for (auto* column : {&s.references, &s.positions, &s.velocities})
+    for (auto* column : {&s.positions, &s.velocities})
       column->insert(column->end(), {number(), number()});
     s.surface_speeds.push_back(number());
     s.radii.push_back(0.05);
@@ -52,6 +52,7 @@ CheckpointShare some_share(int num_particles, std::int64_t first_id) {
   }
   s.wall_contact_ids = {first_id};
   s.wall_contact_walls = {1};
+  s.wall_contact_images = {-1, 0, 2};
   s.wall_contact_springs = {-0.0};
   s.bond_ids = {first_id, first_id + 1};
   s.bond_laws = {0};
@@ -67,11 +68,9 @@ CheckpointState some_state() {
   s.skin = 0.01;
   s.reach = 0.13;
   s.start_particles = s.num_particles = 40;
-  s.check_step = 498;
-  s.interval = 4;
-  s.has_check = true;
-  s.check = {1e-4, 2.5, 0.0};
-  s.plate_forces = {{499, {1, 2, 3}}, {498, {}}};
+  s.grain = 0x1p-40;
+  s.look_step = 496;
+  s.look_outside = 7;
   s.walls.resize(2);
   s.walls[1].point[1] = 0.75;
   s.fingerprint = {1, 2, 3};
@@ -91,7 +90,7 @@ ManifestFile listed(const RankFileSeal& seal, std::span<const CheckpointShare> s
 std::string write_some(const std::string& path, std::int64_t step = 500) {
   const CheckpointFolder folder(path);
   folder.begin(step);
-  Manifest manifest{step, 0.1, 2, "a run", {}};
+  Manifest manifest{step, 0.1, 2, "a run", {}, {}};
   for (std::uint32_t rank = 0; rank < 2; ++rank) {
     const std::vector<CheckpointShare> shares{some_share(12, 100 * rank + 1),
                                               some_share(8, 100 * rank + 51)};
@@ -144,6 +143,7 @@ TEST(Checkpoint, BringsBackWhatWasPutIn) {
   EXPECT_EQ(shares[1].ids, expected.ids);
   EXPECT_EQ(shares[1].velocities, expected.velocities);
   EXPECT_EQ(shares[1].totals, expected.totals);
+  EXPECT_EQ(shares[1].wall_contact_images, (std::vector<std::int32_t>{-1, 0, 2, -1, 0, 2}));
   EXPECT_TRUE(std::signbit(shares[1].wall_contact_springs[0]))
       << "the sign of a zero is part of the state";
 }
@@ -154,8 +154,7 @@ TEST(Checkpoint, BringsBackTheState) {
   const CheckpointState state = decode_state(encode(expected), "file");
 
   EXPECT_EQ(encode(state), encode(expected));
-  EXPECT_EQ(state.check[1], 2.5);
-  EXPECT_EQ(state.plate_forces[0].digits, expected.plate_forces[0].digits);
+  EXPECT_EQ(state.look_outside, 7);
   EXPECT_EQ(state.walls[1].point[1], 0.75);
 }
 
@@ -222,7 +221,7 @@ TEST(Checkpoint, SurvivesAnyBytes) {
 }
 
 TEST(Checkpoint, RefusesAManifestWithNumbersThatAreNoCounts) {
-  const Manifest manifest{5, 0.1, 2, "a run", {{{64, 1}, 0, 3, 20, 5, 2, 1}}};
+  const Manifest manifest{5, 0.1, 2, "a run", {{{64, 1}, 0, 3, 20, 5, 2, 1}}, {}};
   const std::string text = manifest_text(manifest);
   EXPECT_NO_THROW((void)parse_manifest(text, "file"));
   for (const auto& [from, to] :
@@ -251,13 +250,15 @@ TEST(Checkpoint, RefusesColumnsThatDoNotFitEachOther) {
     spoil(share);
     EXPECT_THROW(check_share(share, kLimits, "file"), InputError);
   };
-  refuses([](CheckpointShare& s) { s.references.pop_back(); });
+  refuses([](CheckpointShare& s) { s.positions.pop_back(); });
   refuses([](CheckpointShare& s) { s.velocities.push_back(0.0); });
-  refuses([](CheckpointShare& s) { s.references[3] = std::nan(""); });
+  refuses([](CheckpointShare& s) { s.positions[3] = std::nan(""); });
   refuses([](CheckpointShare& s) { s.types[0] = 3; });
   refuses([](CheckpointShare& s) { s.contact_ids.pop_back(); });
   refuses([](CheckpointShare& s) { s.contact_springs.pop_back(); });
   refuses([](CheckpointShare& s) { s.wall_contact_walls[0] = -1; });
+  refuses([](CheckpointShare& s) { s.wall_contact_images.pop_back(); });
+  refuses([](CheckpointShare& s) { s.wall_contact_images[0] = 1 << 30; });
   refuses([](CheckpointShare& s) { s.bond_laws[0] = 1; });
   refuses([](CheckpointShare& s) { s.bond_states.pop_back(); });
   refuses([](CheckpointShare& s) { s.externals = {1.0}; });

@@ -179,7 +179,7 @@ TEST(Deck, TakesParticleFilesFromTheFolderOfTheDeck) {
 
   const auto& file = std::get<FileSource>(deck.sources[1].kind);
   EXPECT_EQ(file.path, "decks/more.data");
-  EXPECT_EQ(file.format, FileSource::Format::LammpsData);
+  EXPECT_TRUE(file.has_sphere_density);
 }
 
 TEST(Deck, LetsEachParticleOfAListOverrideItsSource) {

@@ -64,6 +64,8 @@ TEST(ExactSum, LosesNothingToCancellation) {
   EXPECT_EQ(sum_of({0.1, 0.2, -0.3}),
             static_cast<double>(__float128(0.1) + __float128(0.2) - __float128(0.3)));
   EXPECT_EQ(sum_of({5e-324, 1.0}), 1.0);
+  EXPECT_EQ(sum_of({5e-324, -1.0, 1.0}), 5e-324);
+  EXPECT_EQ(sum_of({0x1.8p-500, 0x1p-552, -0x1p-500}), 0x1p-501 + 0x1p-552);
   EXPECT_EQ(sum_of({}), 0.0);
   EXPECT_EQ(sum_of({-0.0, 0.0}), 0.0);
 }

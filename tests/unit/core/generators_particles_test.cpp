@@ -61,7 +61,7 @@ class ParticlesFromFile : public ::testing::Test {
     file.write("id,type,radius,density,x,y,z,vx\n" + rows);
     file.commit();
     ParticleSource source;
-    source.kind = FileSource{path_, FileSource::Format::Csv};
+    source.kind = FileSource{path_};
     return source;
   }
 
@@ -111,7 +111,6 @@ TEST(Lattice, JittersWithinTheGapOnly) {
   auto& kind = std::get<LatticeSource>(source.kind);
   kind.sizes.classes = {{0.1, 0.2, 1.0}};
   kind.jitter = 1.0;
-  source.bond = 0;
 
   const ParticleSet set = make_particles(model_of(2), std::vector{source});
 
@@ -262,6 +261,31 @@ TEST(CheckParticles, RefusesGrossOverlapsUnlessBondedOrFixed) {
   pair.bonds.clear();
   pair.particles[0].fixed = pair.particles[1].fixed = true;
   EXPECT_NO_THROW(check_particles(model, pair));
+}
+
+TEST(CheckParticles, RefusesAVelocityOfWhatIsFixed) {
+  constexpr double kEndless = std::numeric_limits<double>::infinity();
+  ParticleSource source = lattice(Arrangement::Square, {1, 1, 0}, {3, 3, 0});
+  source.fixed = Box{Vec3::Constant(-kEndless), Vec3::Constant(kEndless)};
+  EXPECT_NO_THROW((void)make_particles(model_of(2), std::vector{source}));
+  source.velocity = Vec3(0, 1, 0);
+  EXPECT_NE(message_of([&] {
+              (void)make_particles(model_of(2), std::vector{source});
+            }).find("particle 1 is fixed and has a velocity"),
+            std::string::npos);
+  source.velocity = Vec3::Zero();
+  source.omega = Vec3(0, 0, 1);
+  EXPECT_THROW((void)make_particles(model_of(2), std::vector{source}), InputError);
+
+  source.fixed = Box{{1, 1, 0}, {3, 2, 0}};  // the lower half: the upper one spins
+  const ParticleSet half = make_particles(model_of(2), std::vector{source});
+  for (const ParticleData& p : half.particles) EXPECT_EQ(p.omega.z(), p.fixed ? 0.0 : 1.0);
+  EXPECT_TRUE(half.particles.front().fixed);
+  EXPECT_FALSE(half.particles.back().fixed);
+
+  ParticleSet one;
+  one.particles = {{1, 0, 0.1, 1, {5, 5, 0}, Vec3::Zero(), {0, 0, 2}, true}};
+  EXPECT_THROW(check_particles(model_of(2), one), InputError);
 }
 
 }  // namespace

@@ -123,9 +123,12 @@ TEST(ParticlesCsv, NamesBothLinesOfARepeatedId) {
 }
 
 TEST(ParticlesCsv, RefusesFilesThatCannotBeRead) {
-  EXPECT_THROW((void)read_particles_csv("/no/such/file.csv"), InputError);
-  EXPECT_THROW((void)read_particles_csv("/dev/zero"), InputError);
-  EXPECT_THROW((void)read_particles_csv("/"), InputError);
+  const test::TemporaryFolder folder;
+  std::filesystem::create_symlink("/dev/zero", folder.at("zero.csv"));
+  std::filesystem::create_directory(folder.at("folder.csv"));
+  EXPECT_THROW((void)read_particles("/no/such/file.csv"), InputError);
+  EXPECT_THROW((void)read_particles(folder.at("zero.csv")), InputError);
+  EXPECT_THROW((void)read_particles(folder.at("folder.csv")), InputError);
 }
 
 TEST(ParticleFiles, ComeBackBitForBit) {
@@ -157,7 +160,7 @@ TEST(ParticleFiles, ReadAMillionRowsInAFewSeconds) {
   write_particles_csv(path, particles);
 
   const auto begin = std::chrono::steady_clock::now();
-  const ParticleFile file = read_particles_csv(path);
+  const ParticleFile file = read_particles(path);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 
@@ -195,17 +198,17 @@ TEST(ParticlesLammps, ConvertsSphereDensityToTheArealOneOfTheSameMass) {
   EXPECT_FALSE(file.has_sphere_density);
 }
 
-TEST(ParticlesLammps, TakesLiggghtsDensitiesAsTheyAre) {
+TEST(ParticlesLammps, GivesTheTitleNoMeaning) {
   std::string text = kData;
   text.replace(0, 6, "by LIGGGHTS");
-  EXPECT_FALSE(parse_particles_lammps(text, "a.data").has_sphere_density);
+  EXPECT_TRUE(parse_particles_lammps(text, "a.data").has_sphere_density);
 }
 
 TEST(ParticlesLammps, ComesBackFromItsOwnFile) {
   const std::vector<ParticleData> particles = some_particles();
   const std::string path = temporary("back.data");
 
-  write_particles_lammps(path, particles, Box{Vec3(-2, -2, -2), Vec3(2, 2, 2)}, 3);
+  write_particles_lammps(path, particles, {}, {{Vec3(-2, -2, -2), Vec3(2, 2, 2)}, 3, true, false});
   const ParticleFile file = read_particles(path);
 
   ASSERT_EQ(file.particles.size(), particles.size());
@@ -224,7 +227,7 @@ TEST(ParticlesLammps, RefusesWhatItDoesNotUnderstand) {
   EXPECT_EQ(lammps_error(with("9 1 0.1 2000 5 6 0", "9 1 -0.1 2000 5 6 0")).place().line, 14);
   EXPECT_EQ(lammps_error(with("9 1 0.1 2000 5 6 0", "9 1 0.1 2000 nan 6 0")).place().column, 14);
   EXPECT_EQ(lammps_error(with("9 1 2 3 4 5 6", "8 1 2 3 4 5 6")).place().line, 18);
-  EXPECT_EQ(lammps_error(with("Velocities", "Bonds")).place().line, 16);
+  EXPECT_EQ(lammps_error(with("Velocities", "Bodies")).place().line, 16);
   EXPECT_EQ(lammps_error(with("# sphere", "# atomic")).place().line, 10);
   EXPECT_EQ(lammps_error(with("0 10 xlo", "10 0 xlo")).place().line, 6);
   EXPECT_EQ(lammps_error(with("3 atoms", "x atoms")).place().line, 3);

@@ -11,12 +11,15 @@
 
 #include <fmt/format.h>
 
+#include <barchan/core/force_grain.hpp>
 #include <barchan/core/pair_list.hpp>
 
 #include "lane_fixture.hpp"
 
 namespace barchan::test {
 namespace {
+
+constexpr ForceGrain kGrain{0x1p-30};
 
 /// Records of particles, the last two of them waste, and a list of pairs among them.
 template <int Dim>
@@ -55,7 +58,6 @@ struct Sample {
     }
     list.pad(particles);
     list.template reset_springs<Dim>();
-    list.result.assign(list.i.size() * L::kForce, 7.0);
   }
 
   /// Pair k touches just so, or not by one unit in the last place.
@@ -74,18 +76,39 @@ struct Sample {
     j.motion = motion.data();
     j.spin = spin.data();
     j.force = force.data();
-    j.i = j.row_i = list.i.data();
-    j.j = j.row_j = list.j.data();
+    j.i = list.i.data();
+    j.j = list.j.data();
     j.code = list.code.data();
     j.spring = list.spring.data();
-    j.result = list.result.data();
     j.end = list.size();
     j.dt = 2e-2;
+    j.rounder = kGrain.rounder();
     j.box = box;
     j.laws = laws.view();
     return j;
   }
 };
+
+/// The force record of every pair in its last of `steps` steps: pairs one by one, on a clean row.
+template <int Dim>
+std::vector<std::vector<double>> forces_of_pairs(Sample<Dim>& s, const LawTable& laws,
+                                                 const PeriodicBox& box, int steps) {
+  using L = Layout<Dim>;
+  const KernelSet kernels = make_kernels(Dim, VectorWidth::Scalar, laws, true, box);
+  std::vector<std::vector<double>> forces(s.list.i.size());
+  for (int n = 0; n < steps; ++n) {
+    for (std::size_t k = 0; k < forces.size(); ++k) {
+      PairJob job = s.job(laws, box);
+      job.begin = static_cast<std::int64_t>(k);
+      job.end = job.begin + 1;
+      std::fill(s.force.begin(), s.force.end(), 0.0);
+      kernels.pairs(job);
+      const double* f = s.force.data() + static_cast<std::size_t>(s.list.i[k]) * L::kForce;
+      forces[k].assign(f, f + L::kForce);
+    }
+  }
+  return forces;
+}
 
 bool same_bits(const AlignedVector<double>& a, const AlignedVector<double>& b) {
   return std::ranges::equal(a, b, [](double p, double q) {
@@ -149,23 +172,19 @@ void expect_same_at_any_width(const Choice& c, int pairs) {
     sample.barely(1, true);
     sample.barely(3, false);
   }
-  for (const bool kept : {false, true}) {
-    std::vector<Sample<Dim>> after;
-    for (const VectorWidth width : vector_widths()) {
-      after.push_back(sample);
-      const KernelSet kernels = make_kernels(Dim, width, laws, c.has_bonds, box);
-      for (int n = 0; n < 3; ++n)
-        (kept ? kernels.pairs_kept : kernels.pairs)(after.back().job(laws, box));
-    }
-    for (std::size_t w = 1; w < after.size(); ++w) {
-      const auto what = fmt::format(
-          "{}, {}D, {} pairs, {} materials, dashpots {}, clamp {}, bonds {}, periodic {}, kept {}",
-          name_of(vector_widths()[w]), Dim, pairs, c.num_materials, static_cast<int>(c.dashpots),
-          c.no_tension, c.has_bonds, c.periodic, kept);
-      ASSERT_TRUE(same_bits(after[w].force, after[0].force)) << what;
-      ASSERT_TRUE(same_values(after[w].list.spring, after[0].list.spring)) << what;
-      ASSERT_TRUE(same_values(after[w].list.result, after[0].list.result)) << what;
-    }
+  std::vector<Sample<Dim>> after;
+  for (const VectorWidth width : vector_widths()) {
+    after.push_back(sample);
+    const KernelSet kernels = make_kernels(Dim, width, laws, c.has_bonds, box);
+    for (int n = 0; n < 3; ++n) kernels.pairs(after.back().job(laws, box));
+  }
+  for (std::size_t w = 1; w < after.size(); ++w) {
+    const auto what =
+        fmt::format("{}, {}D, {} pairs, {} materials, dashpots {}, clamp {}, bonds {}, periodic {}",
+                    name_of(vector_widths()[w]), Dim, pairs, c.num_materials,
+                    static_cast<int>(c.dashpots), c.no_tension, c.has_bonds, c.periodic);
+    ASSERT_TRUE(same_bits(after[w].force, after[0].force)) << what;
+    ASSERT_TRUE(same_values(after[w].list.spring, after[0].list.spring)) << what;
   }
 }
 
@@ -188,25 +207,21 @@ TEST(Kernels, PaddingOfTheLastBatchDoesNothing) {
   empty.list.push(4, 5, 0);
   empty.list.pad(4);
   empty.list.reset_springs<2>();
-  empty.list.result.assign(8 * Layout<2>::kForce, 7.0);
   const LawTable laws = laws_of(1, Dashpots::Critical, false);
   for (const VectorWidth width : vector_widths()) {
-    make_kernels(2, width, laws, true, box_of<2>(true))
-        .pairs_kept(empty.job(laws, box_of<2>(true)));
+    make_kernels(2, width, laws, true, box_of<2>(true)).pairs(empty.job(laws, box_of<2>(true)));
     EXPECT_TRUE(std::ranges::all_of(empty.force, [](double f) { return f == 0.0; }));
-    EXPECT_TRUE(std::ranges::all_of(empty.list.result, [](double f) { return f == 0.0; }));
   }
 }
 
 TEST(Kernels, SampleHasPairsThatSlideStickAndDoNotTouch) {
   const LawTable laws = laws_of(2, Dashpots::Constant, true);
   Sample<2> sample(40, 200, laws.size(), 11);
-  for (int n = 0; n < 3; ++n)
-    make_kernels(2, VectorWidth::Scalar, laws, true, {}).pairs_kept(sample.job(laws, {}));
+  const auto forces = forces_of_pairs(sample, laws, {}, 3);
   int apart = 0, sliding = 0, sticking = 0;
   for (std::size_t k = 0; k < 200; ++k) {
     if (sample.list.code[k] == 0) continue;
-    const double* f = sample.list.result.data() + 4 * k;
+    const double* f = forces[k].data();
     const double mu = laws.view().rows[LawView::kRow * sample.list.code[k] + LawView::Mu];
     const double ft = std::fabs(f[2]), total = std::hypot(f[0], f[1]),
                  fn = std::sqrt(std::max(0.0, total * total - ft * ft));
@@ -229,16 +244,12 @@ void expect_antisymmetric(const Choice& c) {
   const PeriodicBox box = box_of<Dim>(c.periodic);
   Sample<Dim> there(40, 120, laws.size(), 21), back = there;
   for (std::size_t k = 0; k < 120; ++k) std::swap(back.list.i[k], back.list.j[k]);
-  const KernelSet kernels = make_kernels(Dim, VectorWidth::Scalar, laws, true, box);
 
-  for (int n = 0; n < 3; ++n) {
-    kernels.pairs_kept(there.job(laws, box));
-    kernels.pairs_kept(back.job(laws, box));
-  }
+  const auto one_way = forces_of_pairs(there, laws, box, 3);
+  const auto other_way = forces_of_pairs(back, laws, box, 3);
 
   for (std::size_t k = 0; k < 120; ++k) {
-    const double *f = there.list.result.data() + k * L::kForce,
-                 *g = back.list.result.data() + k * L::kForce;
+    const double *f = one_way[k].data(), *g = other_way[k].data();
     for (int q = 0; q < Dim; ++q) ASSERT_EQ(f[q], -g[q]);
     for (int q = L::kTorque; q < L::kTorque + kSpins<Dim>; ++q) ASSERT_EQ(f[q], g[q]);
     for (int q = 0; q < L::kSprings; ++q) {
@@ -265,7 +276,7 @@ void expect_masks() {
     for (auto& code : sample.list.code) code = std::max<std::uint8_t>(code, 1);
     sample.barely(1, true);
     sample.barely(3, false);
-    make_kernels(Dim, VectorWidth::Scalar, laws, true, box).pairs_kept(sample.job(laws, box));
+    const auto forces = forces_of_pairs(sample, laws, box, 1);
     for (const VectorWidth width : vector_widths()) {
       const KernelSet kernels = make_kernels(Dim, width, laws, true, box);
       if (kernels.narrow == nullptr) continue;
@@ -274,7 +285,7 @@ void expect_masks() {
       kernels.narrow(sample.job(laws, box), 0.0, masks.data());
 
       for (std::size_t k = 0; k < 200; ++k) {
-        const double* f = sample.list.result.data() + k * Layout<Dim>::kForce;
+        const double* f = forces[k].data();
         const bool acts =
             std::any_of(f, f + Layout<Dim>::kForce, [](double c) { return c != 0.0; });
         const bool touches = ((masks[k / 8] >> (k % 8)) & 1U) != 0;
@@ -318,6 +329,73 @@ void expect_same_rows() {
       EXPECT_TRUE(same_bits(after[w].motion, after[0].motion)) << name_of(vector_widths()[w]);
       EXPECT_TRUE(same_bits(after[w].spin, after[0].spin)) << name_of(vector_widths()[w]);
       EXPECT_TRUE(same_bits(after[w].force, after[0].force)) << name_of(vector_widths()[w]);
+    }
+  }
+}
+
+template <int Dim>
+void expect_sums_without_order() {
+  using L = Layout<Dim>;
+  const LawTable laws = laws_of(3, Dashpots::Both, true);
+  const PeriodicBox box = box_of<Dim>(true);
+  Sample<Dim> forward(40, 400, laws.size(), 51), shuffled = forward;
+  std::mt19937_64 random(3);
+  for (std::size_t k = 399; k > 0; --k) {
+    const std::size_t q = random() % (k + 1);
+    std::swap(shuffled.list.i[k], shuffled.list.i[q]);
+    std::swap(shuffled.list.j[k], shuffled.list.j[q]);
+    std::swap(shuffled.list.code[k], shuffled.list.code[q]);
+    if (random() % 2 == 0) std::swap(shuffled.list.i[k], shuffled.list.j[k]);
+  }
+  const KernelSet kernels = make_kernels(Dim, vector_widths().back(), laws, true, box);
+
+  kernels.pairs(forward.job(laws, box));
+  kernels.pairs(shuffled.job(laws, box));
+
+  EXPECT_TRUE(same_bits(forward.force, shuffled.force));
+  for (int c = 0; c < Dim; ++c) {
+    double sum = 0.0;  // exact, in any order
+    for (std::size_t f = 0; f < forward.force.size(); f += L::kForce)
+      sum += forward.force[f + static_cast<std::size_t>(c)];
+    EXPECT_EQ(sum, 0.0) << "component " << c;
+  }
+}
+
+TEST(Kernels, SumTheSameInAnyOrderAndToZeroOverAll) {
+  expect_sums_without_order<2>();
+  expect_sums_without_order<3>();
+}
+
+TEST(Kernels, RoundToMultiplesOfTheGrainAndBoundEachComponent) {
+  const LawTable laws = laws_of(2, Dashpots::Both, false);
+  Sample<3> sample(40, 200, laws.size(), 61);
+  for (const auto& f : forces_of_pairs(sample, laws, {}, 2)) {
+    for (std::size_t c = 0; c < 7; ++c) {
+      EXPECT_EQ(std::remainder(f[c], kGrain.size), 0.0);
+      EXPECT_LE(std::fabs(f[c]), f[3] + kGrain.size);
+      EXPECT_FALSE(f[c] == 0.0 && std::signbit(f[c]));
+    }
+  }
+}
+
+TEST(Kernels, TellTheLowestIdOfRowsThatBearTooMuch) {
+  for (const VectorWidth width : vector_widths()) {
+    for (const int dim : {2, 3}) {
+      Sample<3> s(9, 8, 2, 71);
+      const auto force = static_cast<std::size_t>(dim == 2 ? 4 : 8);
+      std::vector<std::int64_t> ids{5, 9, 4, 7, 3, 8, 2, 6, 1, 0, 0};
+      for (const std::size_t i : {1U, 3U, 5U}) s.force[i * force + 3] = 100.0 + 1.0;
+      s.force[7 * force + 3] = 100.0;
+      const KernelSet kernels =
+          make_kernels(dim, width, laws_of(1, Dashpots::Constant, true), false, {});
+      RowJob job{s.motion.data(), s.spin.data(), s.force.data(), 0, 9, 1e-3, 1e-3, {}, 0.0};
+      job.most_force = 100.0;
+      job.id = ids.data();
+
+      const RowSpeeds speeds = kernels.rows(job);
+
+      EXPECT_EQ(speeds.overload.id, 7) << name_of(width) << ", " << dim << "D";
+      EXPECT_EQ(speeds.overload.force, 101.0);
     }
   }
 }

@@ -38,8 +38,10 @@ World<Dim> world_of(const Domain& domain, double cutoff, double skin, std::int64
   World<Dim> w;
   w.grid = Grid<Dim>(domain, cutoff, num_particles);
   w.laws = LawTable(table_of(2));
+  w.grain.size = 0x1p-30;
   w.kernels = make_kernels(Dim, VectorWidth::Scalar, w.laws, has_bonds, w.grid.box());
   w.skin = skin;
+  w.most_travel = 0.5 * skin;
   w.dt = 1e-4;
   w.num_particles = num_particles;
   return w;
@@ -121,7 +123,7 @@ class Lanes {
   }
 
   void step() {
-    const StepFrame frame{world_->dt, {}, 0.0};
+    const StepFrame frame{world_->dt, {}, 0.0, step_++};
     for (auto& lane : lanes_) {
       lane->begin_step(frame);
       for (int c = 0; c < lane->num_chunks(); ++c) lane->run_chunk(c);
@@ -160,7 +162,7 @@ class Lanes {
           if (!is_new && it->second != s) sides_agree = false;
         }
       };
-      for (const auto name : Lane<Dim>::kLists) take(lane->list(name));
+      take(lane->pairs());
       for (const auto side : {Lane<Dim>::Left, Lane<Dim>::Right}) {
         if (lane->band(side).exists) take(lane->band(side).across);
       }
@@ -187,8 +189,6 @@ class Lanes {
     Band &left = lanes_[l]->band(Lane<Dim>::Left), &right = lanes_[l]->band(Lane<Dim>::Right);
     left.exists = l > 0 || wraps;
     right.exists = l + 1 < lanes_.size() || wraps;
-    left.ghosts_first = l > 0;
-    right.ghosts_first = wraps && l + 1 == lanes_.size();
   }
 
   void exchange_ghosts() {
@@ -215,6 +215,7 @@ class Lanes {
 
   World<Dim>* world_;
   std::vector<int> cuts_;
+  std::int64_t step_ = 0;
   std::vector<std::unique_ptr<Lane<Dim>>> lanes_;
 };
 

@@ -12,6 +12,7 @@ namespace barchan {
 namespace {
 
 constexpr double kSkin = 0.02, kDt = 1e-3;
+constexpr int kLook = 16;
 
 CheckNumbers travel_of(double distance, double speed) {
   CheckNumbers mine;
@@ -32,7 +33,7 @@ struct Course {
 
 /// Runs a schedule against a course. @return the largest distance that any step was computed with
 double farthest(Course course, double gravity, int num_steps, int& rebuilds) {
-  RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, gravity);
+  RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, gravity, kLook);
   double most = 0.0;
   rebuilds = 0;
   for (std::int64_t step = 0; step < num_steps; ++step) {
@@ -60,40 +61,74 @@ TEST(RebuildSchedule, NoStepIsComputedBeyondHalfTheSkinInFreeFall) {
 }
 
 TEST(RebuildSchedule, NoStepIsComputedBeyondHalfTheSkinWhileSpeedsAtMostDoubleBetweenAnswers) {
-  // Growth that doubles the speed in the longest span of the rule, 2·kLag + kLongest steps.
+  // Growth that doubles the speed in the longest span of the rule.
   for (const double v : {0.01, 0.1, 0.5}) {
-    const double span = (2 * RebuildSchedule::kLag + RebuildSchedule::kLongest) * kDt;
+    const double span = (RebuildSchedule::kLag + kLook) * kDt;
     int rebuilds = 0;
     const double most = farthest({v / span, v}, 0.0, 150, rebuilds);
     EXPECT_LE(most, 0.5 * kSkin) << "first speed " << v;
   }
 }
 
-TEST(RebuildSchedule, ItsIntervalBoundsTheDistanceAtTheNextAnswer) {
-  for (int last = 0; last <= RebuildSchedule::kLongest; ++last) {
-    for (const double speed : {0.0, 0.01, 0.1, 0.5, 1.0}) {
-      for (const double distance : {0.0, 0.3 * kSkin, 0.49 * kSkin}) {
-        const int n = RebuildSchedule::next_interval(distance, speed, kSkin, kDt, 9.81, last);
-        ASSERT_LE(n, std::clamp(2 * last, 1, RebuildSchedule::kLongest));
-        if (n < 0) continue;
-        const double t = (2 * RebuildSchedule::kLag + n) * kDt;
-        EXPECT_LE(distance + 2.0 * speed * t + 9.81 * t * t, 0.5 * kSkin);
+TEST(RebuildSchedule, ItsRuleBoundsTheDistanceAtTheNextAnswer) {
+  const RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 9.81, kLook);
+  for (std::int64_t step = 0; step < kLook; step += RebuildSchedule::kCheckEvery) {
+    for (int last = 0; last <= kLook; ++last) {
+      for (const double speed : {0.0, 0.01, 0.1, 0.5, 1.0}) {
+        for (const double distance : {0.0, 0.3 * kSkin, 0.49 * kSkin}) {
+          const std::int64_t next = schedule.next_check(step, distance, speed, last);
+          if (next < 0) continue;
+          ASSERT_GT(next, step);
+          ASSERT_LE(next, kLook) << "a look is left out";
+          ASSERT_EQ(next % RebuildSchedule::kCheckEvery, 0);
+          const double t = static_cast<double>(RebuildSchedule::kLag + next - step) * kDt;
+          EXPECT_LE(distance + 2.0 * speed * t + 9.81 * t * t, 0.5 * kSkin);
+        }
       }
     }
   }
 }
 
-TEST(RebuildSchedule, IntervalsGrowWhileNothingMoves) {
-  int interval = 0, steps = 0;
-  for (; interval < RebuildSchedule::kLongest && steps < 10; ++steps) {
-    interval = RebuildSchedule::next_interval(0.0, 0.0, kSkin, kDt, 0.0, interval);
+TEST(RebuildSchedule, ChecksComeSeldomWhileNothingMovesAndEveryLookHasOne) {
+  RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0, kLook);
+  int checks = 0;
+  for (std::int64_t step = 0; step < 20 * kLook; ++step) {
+    ASSERT_FALSE(schedule.must_rebuild(step));
+    if (step % 7 == 0) schedule.rebuilt(step);  // for reasons of somebody else
+    ASSERT_TRUE(!schedule.is_look(step) || schedule.is_check_due(step)) << "step " << step;
+    if (!schedule.is_check_due(step)) continue;
+    schedule.begin_check(travel_of(0.0, 0.0), {});
+    ++checks;
   }
-  EXPECT_EQ(interval, RebuildSchedule::kLongest);
-  EXPECT_LE(steps, 5);
+  EXPECT_LE(checks, 20 * kLook / 3);
+}
+
+TEST(RebuildSchedule, ALookIsAnsweredThoughListsAreMadeAnewMeanwhile) {
+  RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0, kLook);
+  schedule.begin_check({kSkin, 0.0, 17, 0.25, 1, {}}, {});
+  schedule.rebuilt(1);
+
+  EXPECT_EQ(schedule.pending_look(2).outside, 17);
+  EXPECT_FALSE(schedule.must_rebuild(RebuildSchedule::kLag)) << "its distance is of the old lists";
+  EXPECT_EQ(schedule.take_answer()->outside, 17);
+}
+
+TEST(RebuildSchedule, GoesOnFromACheckpointWithTheLookThatWasPending) {
+  RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0, kLook);
+  schedule.restore(17, {16, 5, 0.5}, 100);
+
+  EXPECT_FALSE(schedule.must_rebuild(17));
+  EXPECT_FALSE(schedule.must_rebuild(18));
+  const auto answer = schedule.take_answer();
+
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->outside, 5);
+  EXPECT_EQ(answer->overlap, 0.5);
+  EXPECT_EQ(answer->particles, 100);
 }
 
 TEST(RebuildSchedule, ForeseesOnALoneRankWhatItWillDecide) {
-  RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0);
+  RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0, kLook);
   int rebuilds = 0, goes = 0;
   for (std::int64_t step = 0; step < 2000; ++step) {
     if (!schedule.is_check_due(step)) continue;
@@ -122,7 +157,7 @@ TEST(RebuildSchedule, ForeseesOnALoneRankWhatItWillDecide) {
 
 TEST(RebuildSchedule, ForeseesNothingWhereSomebodyHasAWish) {
   for (const bool stop : {false, true}) {
-    RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0);
+    RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0, kLook);
     schedule.begin_check(travel_of(0.0, 0.0), {stop, !stop});
     EXPECT_FALSE(schedule.foresee());
     EXPECT_FALSE(schedule.must_rebuild(RebuildSchedule::kLag));
@@ -131,7 +166,7 @@ TEST(RebuildSchedule, ForeseesNothingWhereSomebodyHasAWish) {
 }
 
 TEST(RebuildSchedule, TellsOnceWhatACheckFound) {
-  RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0);
+  RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0, kLook);
   schedule.begin_check({0.5, 2.0, 17, 0.25, 100, {1, -2, 3}}, {});
   EXPECT_FALSE(schedule.take_answer());
 
@@ -151,7 +186,7 @@ TEST(RebuildSchedule, TellsOnceWhatACheckFound) {
 }
 
 TEST(RebuildSchedule, AStateThatIsNotFiniteIsNeverTakenForOneAtRest) {
-  RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0);
+  RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0, kLook);
   schedule.begin_check(travel_of(std::numeric_limits<double>::quiet_NaN(), 0.0), {});
 
   EXPECT_TRUE(schedule.must_rebuild(RebuildSchedule::kLag));

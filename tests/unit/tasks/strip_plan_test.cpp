@@ -31,7 +31,7 @@ TEST(StripPlan, CutsSlabsNoNarrowerThanTheReach) {
 
   const StripPlan plan = plan_strips(c.model, c.set);
 
-  EXPECT_GE(plan.slab_width, search_reach(c.set, 0.1));
+  EXPECT_GE(plan.slab_width, search_reach(c.model, c.set, 0.1));
   EXPECT_EQ(plan.slab_counts.size(), 16U);
   EXPECT_EQ(plan.most_ranks(), 8);
 }
@@ -57,7 +57,12 @@ TEST(SearchReach, LeavesRoomForALongBondToStretch) {
   Case c;
   c.set.bonds.push_back({1, 2, 0});
 
-  EXPECT_NEAR(search_reach(c.set, 0.1), 1.1 * 0.4 + 0.1, 1e-12);
+  EXPECT_NEAR(search_reach(c.model, c.set, 0.1), 1.1 * 0.4 + 0.1, 1e-12);
+
+  c.set.bonds.push_back({1, 21, 0});  // a metre apart
+  EXPECT_NEAR(search_reach(c.model, c.set, 0.1), 1.1 * 1.0 + 0.1, 1e-12);
+  c.set.bonds.back().length = 1.5;
+  EXPECT_NEAR(search_reach(c.model, c.set, 0.1), 1.1 * 1.5 + 0.1, 1e-12);
 }
 
 }  // namespace
