@@ -5,7 +5,9 @@
 
 #include <barchan/app/command_line.hpp>
 #include <barchan/app/commands.hpp>
+#include <barchan/app/signals.hpp>
 #include <barchan/app/verdict.hpp>
+#include <barchan/comm/launcher.hpp>
 #include <barchan/comm/mpi_session.hpp>
 
 namespace barchan::app {
@@ -31,14 +33,24 @@ int run_alone(const CommandLine& line) {
   return with_verdict(nullptr, [&] { run_local(line); });
 }
 
+/// Several processes that do not know of each other would all do the work, and print.
+bool has_wrong_launcher(int world_size) {
+  const LauncherMismatch mismatch = launcher_mismatch(world_size);
+  if (mismatch && mismatch.is_first)
+    std::fprintf(stderr, "barchan: %s (%s)\n", mismatch.what.c_str(), mismatch.remedy.c_str());
+  return static_cast<bool>(mismatch);
+}
+
 }  // namespace
 
 int run_barchan(int argc, char** argv) {
+  keep_standard_streams();
   const CommandLine line = parse_command_line(argc, argv);
   if (line.kind != CommandKind::Run && line.kind != CommandKind::Probe) return run_alone(line);
   try {
     const MpiSession session(argc, argv);
     const Communicator world = Communicator::world();
+    if (has_wrong_launcher(world.size())) return kWrongInput;
     return with_verdict(&world, [&] {
       if (line.kind == CommandKind::Run) return run_deck(world, line.run);
       probe(world, line.probe);

@@ -41,6 +41,13 @@ CLI::Validator one_of(const std::vector<std::string>& words) {
       "{" + listed(words) + "}");
 }
 
+/// An empty argument is often a variable of a script that was never set: what an option is for must
+/// not be left to its default then.
+CLI::Validator not_empty() {
+  return CLI::Validator(
+      [](std::string& word) -> std::string { return word.empty() ? "is empty" : ""; }, "");
+}
+
 /// `replay` records a run first, so that it is no exchange of its own.
 std::vector<std::string> with_replay(std::vector<std::string> names) {
   names.emplace_back("replay");
@@ -67,7 +74,8 @@ void add_run(CLI::App& root, RunArguments& run, Words& words) {
   command
       .add_option("--out", run.out,
                   "Folder of the results; default: the deck's name with .out, here")
-      ->type_name("DIR");
+      ->type_name("DIR")
+      ->check(not_empty());
   command.add_option("--steps", run.steps, "Number of steps, instead of the deck's")
       ->type_name("N")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53));
@@ -76,7 +84,8 @@ void add_run(CLI::App& root, RunArguments& run, Words& words) {
           "--restart", run.restart,
           "Go on from a checkpoint: 'auto' takes the newest of the folder that is whole; or "
           "its path")
-      ->type_name("auto|PATH");
+      ->type_name("auto|PATH")
+      ->check(not_empty());
   add_settings(command, run.settings);
   command
       .add_option("--threads", run.options.threads,
@@ -88,11 +97,13 @@ void add_run(CLI::App& root, RunArguments& run, Words& words) {
                   "How ranks exchange halos: " + listed(with_replay(exchange_choices())) +
                       ", or A+B for A within a node and B between nodes; default: " +
                       exchange_choices().front())
-      ->type_name("NAME");
+      ->type_name("NAME")
+      ->check(not_empty());
   command
       .add_option("--record", run.record,
                   "With --exchange replay: the exchange of the recorded run; default: auto")
-      ->type_name("NAME");
+      ->type_name("NAME")
+      ->check(not_empty());
   command
       .add_option("--progress", progress,
                   "Who moves messages: the workers between chunks, 'poll' (default), or a 'thread' "
@@ -113,7 +124,8 @@ void add_run(CLI::App& root, RunArguments& run, Words& words) {
   command.add_flag("--trace", run.options.trace,
                    "Write trace.json: tasks, messages and waits of all ranks, for Perfetto");
   command.add_option("--graph", run.graph, "Write the graph of a step as DOT, for Graphviz")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->check(not_empty());
   command.add_flag("--force", run.force, "Replace the results in a folder that exists");
   command.add_flag("--quiet", run.quiet, "Print nothing but errors");
 }

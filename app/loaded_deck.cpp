@@ -11,6 +11,7 @@ LoadedDeck load_deck(const std::string& path, const std::vector<std::string>& se
   loaded.deck = read_deck(path, overrides);
   loaded.particles = make_particles(loaded.deck.model, loaded.deck.sources, loaded.begins);
   check_particles(loaded.deck.model, loaded.particles);
+  loaded.deck.model.sources = make_records(loaded.deck.sources, loaded.particles, loaded.begins);
   return loaded;
 }
 

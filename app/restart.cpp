@@ -40,8 +40,9 @@ RestartPoint restart_point(const Communicator& world, const RunArguments& argume
     point.checkpoint =
         find_checkpoint(world, is_auto ? folder.file("checkpoints") : arguments.restart);
     if (!point.checkpoint && !is_auto) {
-      throw InputError(SourcePlace{arguments.restart, 0, 0}, "there is no checkpoint",
-                       "give a checkpoint, a folder of them, or 'auto'");
+      throw InputError(
+          SourcePlace{arguments.restart, 0, 0}, "there is no checkpoint",
+          "give a checkpoint or a folder of them; without --restart a run begins at step 0");
     }
   }
   if (point.checkpoint) {

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <csignal>
 #include <optional>
 
 #include <fmt/format.h>
@@ -9,44 +8,29 @@
 #include <barchan/app/progress.hpp>
 #include <barchan/app/replay.hpp>
 #include <barchan/app/restart.hpp>
+#include <barchan/app/signals.hpp>
 #include <barchan/app/summary_table.hpp>
 #include <barchan/app/verdict.hpp>
+#include <barchan/comm/leftovers.hpp>
 #include <barchan/comm/watchdog.hpp>
 #include <barchan/core/checkpoint/checkpoint_folder.hpp>
 #include <barchan/core/error.hpp>
 #include <barchan/core/io/text_file.hpp>
 #include <barchan/tasks/exchange_setup.hpp>
 #include <barchan/tasks/results/agree.hpp>
+#include <barchan/tasks/results/folder_claim.hpp>
 #include <barchan/tasks/results/run_results.hpp>
 
 namespace barchan::app {
 namespace {
 
-/// The first signal ends the run after its step; a second one of the same kind ends the program as
-/// usual.
-extern "C" void on_signal(int signal) {
-  Simulation::request_stop();
-  std::signal(signal, SIG_DFL);
-}
-
-extern "C" void on_save_signal(int /*signal*/) {
-  Simulation::request_checkpoint();
-}
-
-/// From the very beginning: a request to save waits for a state, and does not end the program.
-void catch_save_signal() {
-  std::signal(SIGUSR1, on_save_signal);
-}
-
-/// Once there is something to save.
-void catch_signals() {
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error like a full disk
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-}
-
 RunFolder folder_of(const RunArguments& arguments) {
   return arguments.out.empty() ? RunFolder::of_deck(arguments.deck) : RunFolder(arguments.out);
+}
+
+/// Whether a folder with files in it is looked at any further.
+bool may_exist(const RunArguments& arguments) {
+  return arguments.force || !arguments.restart.empty();
 }
 
 /// Everything that can be wrong with the input and is known before the engine: the same verdict on
@@ -155,10 +139,13 @@ Simulation begin(const Communicator& world, const RunOptions& options, const Loa
 }  // namespace
 
 void run_deck(const Communicator& world, const RunArguments& arguments) {
-  catch_save_signal();
+  catch_early_signals();
+  if (world.node_rank() == 0) remove_leftovers();
   check_exchange(arguments.options.exchange, world);
   check_exchange(arguments.record, world);
   const RunFolder folder = folder_of(arguments);
+  std::optional<FolderClaim> claim;  // rank 0's; until all is written
+  on_rank_zero(world, [&] { claim.emplace(folder, may_exist(arguments)); });
   const RestartPoint from = restart_point(world, arguments, folder);
   std::optional<StepLimit> limit;
   LoadedDeck loaded = load(world, arguments, limit);
@@ -172,13 +159,16 @@ void run_deck(const Communicator& world, const RunArguments& arguments) {
   catch_signals();
   RunResults results(simulation, folder, loaded.particles,
                      {arguments.deck, rings, limit, from.continues});
-  simulation.keep_checkpoints(folder.file("checkpoints"), model.checkpoint);
+  if (claim && !claim->former().empty())
+    results.log().add("took the folder over from " + claim->former() + ", which died");
+  // A replay hears nothing from other ranks, so they cannot agree on a checkpoint.
+  if (!recorded) simulation.keep_checkpoints(folder.file("checkpoints"), model.checkpoint);
   loaded.particles = {};
 
   Progress progress(simulation, arguments.quiet);
   advance(simulation, results, folder, progress);
-  const bool interrupted = simulation.step() < model.time.num_steps;
-  save_last(simulation, results, progress, interrupted);
+  const bool interrupted = simulation.step() < model.time.num_steps && !simulation.is_over();
+  if (!recorded) save_last(simulation, results, progress, interrupted);
   const RunSummary summary = results.finish(interrupted);
   if (arguments.options.trace) simulation.write_trace(folder.file("trace.json"));
   if (world.is_root() && !arguments.quiet) print_summary(summary, folder, model);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <barchan/core/source_record.hpp>
 #include <barchan/core/vec.hpp>
 
 // The contents of a deck, checked and in SI, for 2D and 3D alike (2D leaves z at zero).
@@ -179,6 +180,7 @@ struct Model {
   LimitSpec limits;
   OutputSpec output;
   CheckpointSpec checkpoint;
+  std::vector<SourceRecord> sources;  ///< what a restart holds its particles against; may be empty
 };
 
 }  // namespace barchan

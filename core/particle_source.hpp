@@ -98,6 +98,7 @@ struct ListSource {
 /// particles.
 struct ParticleSource {
   SourcePlace place;              ///< of the table in the deck, for errors found while generating
+  SourceRecord record;            ///< what the table says, for checkpoints
   std::optional<int> material;    ///< index; none only for a file that brings its own types
   std::optional<double> density;  ///< instead of the material's (or the file's), 2D areal
   Vec3 velocity = Vec3::Zero();   ///< [m/s]; a file's own velocities are added to it

@@ -56,6 +56,7 @@ CheckpointKeeper::CheckpointKeeper(const Communicator& communicator, std::string
     : communicator_(communicator),
       folder_(std::move(folder)),
       title_(model.title),
+      sources_(model.sources),
       spec_(spec),
       first_step_(step),
       dimension_(model.dimension),
@@ -177,7 +178,7 @@ std::vector<std::int64_t> CheckpointKeeper::numbers() const {
 }
 
 Manifest CheckpointKeeper::agreed_manifest() const {
-  Manifest manifest{copy_.step, copy_.time, dimension_, title_, {}};
+  Manifest manifest{copy_.step, copy_.time, dimension_, title_, {}, sources_};
   const auto numbers = agreement_.sums();
   for (std::size_t r = 0; r < static_cast<std::size_t>(communicator_.size()); ++r) {
     const auto of_rank = numbers.subspan(kNumbers * r, kNumbers);

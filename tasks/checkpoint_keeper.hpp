@@ -79,6 +79,7 @@ class CheckpointKeeper {
   const Communicator& communicator_;
   CheckpointFolder folder_;
   std::string title_;
+  std::vector<SourceRecord> sources_;
   CheckpointSpec spec_;
   std::int64_t first_step_;
   int dimension_;

@@ -195,6 +195,15 @@ class Loader {
   int begin_ = 0, end_ = 0;
 };
 
+void check_same_sources(const OpenCheckpoint& checkpoint, const Model& model) {
+  const std::string what = source_differences(checkpoint.manifest.sources, model.sources);
+  if (what.empty()) return;
+  throw InputError(SourcePlace{checkpoint.path, 0, 0},
+                   "the checkpoint is of a run with other particles: " + what,
+                   "restart with the [[particles]] of that run; or leave --restart out and give "
+                   "--out another folder, to begin a run with these");
+}
+
 }  // namespace
 
 OpenCheckpoint open_checkpoint(const Communicator& communicator, const std::string& path,
@@ -211,6 +220,7 @@ OpenCheckpoint open_checkpoint(const Communicator& communicator, const std::stri
     const RankFile first(path, checkpoint.manifest, 0);
     checkpoint.state = decode_state(first.view().state(), file);
     check_same_model(checkpoint.state, model, file);
+    check_same_sources(checkpoint, model);
     const bool is_whole = checkpoint.state.step == checkpoint.manifest.step &&
                           checkpoint.state.num_particles == checkpoint.manifest.totals().particles;
     if (!is_whole)

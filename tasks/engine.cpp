@@ -6,6 +6,8 @@
 #include <exception>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <barchan/comm/clock.hpp>
 #include <barchan/comm/mpi_session.hpp>
 #include <barchan/core/error.hpp>
@@ -41,7 +43,7 @@ std::int64_t Simulation::EngineOf<Dim>::run(std::int64_t num_steps) {
   std::int64_t done = 0;
   stopped_ = stopped_ && num_steps == 0;
   try {
-    while (done < num_steps && !stopped_) done += go_on(num_steps - done);
+    while (done < num_steps && !stopped_ && !last_stage_ends()) done += go_on(num_steps - done);
   } catch (const AgreedError&) {
     is_in_step_ = false;  // thrown before the step did anything
     failure_ = std::current_exception();
@@ -90,15 +92,16 @@ std::int64_t Simulation::EngineOf<Dim>::go_on(std::int64_t most) {
 template <int Dim>
 int Simulation::EngineOf<Dim>::steps_in_a_go(std::int64_t most) {
   if (strip_->exchange() != nullptr || strip_->num_lanes() == 1 || step_ == 0) return 1;
-  const bool is_last_stage = static_cast<std::size_t>(stage_) + 1 == model_.stages.size();
   const bool walls_stand = std::all_of(
       world_.walls.begin(), world_.walls.end(),
       [](const WallState& wall) { return !wall.is_active || wall.velocity == Vec3::Zero(); });
-  if (!is_last_stage || !walls_stand || plates_->needs_forces(world_.walls)) return 1;
+  if (!is_last_stage() || !walls_stand || plates_->needs_forces(world_.walls)) return 1;
   const auto steps_until = [&](std::int64_t end) {
     std::int64_t steps = 1;
     end = std::min(end, step_ + most);
-    while (step_ + steps < end && !(keeper_ && keeper_->is_due(step_ + steps))) ++steps;
+    while (step_ + steps < end && !(keeper_ && keeper_->is_due(step_ + steps)) &&
+           !stage_may_end(step_ + steps))
+      ++steps;
     return static_cast<int>(steps);
   };
   if (schedule_->is_check_due(step_)) {
@@ -176,18 +179,47 @@ void Simulation::EngineOf<Dim>::update_lists() {
 }
 
 template <int Dim>
+bool Simulation::EngineOf<Dim>::is_last_stage() const {
+  return static_cast<std::size_t>(stage_) + 1 == model_.stages.size();
+}
+
+template <int Dim>
 void Simulation::EngineOf<Dim>::update_stage() {
-  if (step_ == 0) return;
-  if (static_cast<std::size_t>(stage_) + 1 < model_.stages.size() && stage_is_over())
-    enter_stage(stage_ + 1);
+  if (step_ > 0 && !is_last_stage() && stage_is_over()) enter_stage(stage_ + 1);
+}
+
+/// The run ends with its last stage, between two steps; a restart from there comes to the same
+/// verdict.
+template <int Dim>
+bool Simulation::EngineOf<Dim>::last_stage_ends() {
+  if (is_over_ || step_ == 0 || !is_last_stage() || !stage_is_over()) return is_over_;
+  is_over_ = true;
+  if (communicator_.is_root())
+    note(fmt::format("the last stage, '{}', is over, and the run with it",
+                     model_.stages.back().name));
+  return true;
+}
+
+template <int Dim>
+bool Simulation::EngineOf<Dim>::stage_time_is_over(std::int64_t step) const {
+  const Stage& stage = model_.stages[static_cast<std::size_t>(stage_)];
+  return static_cast<double>(step - stage_begin_) * world_.dt >= stage.max_time - 0.5 * world_.dt;
+}
+
+/// Whether somebody must look, before that step, whether the stage is over.
+template <int Dim>
+bool Simulation::EngineOf<Dim>::stage_may_end(std::int64_t step) const {
+  if (stage_time_is_over(step)) return true;
+  const std::int64_t steps = step - stage_begin_;
+  return model_.stages[static_cast<std::size_t>(stage_)].kinetic_ratio > 0.0 && steps > 0 &&
+         steps % kStageCheck == 0;
 }
 
 template <int Dim>
 bool Simulation::EngineOf<Dim>::stage_is_over() {
+  if (!stage_may_end(step_)) return false;
+  if (stage_time_is_over(step_)) return true;
   const Stage& stage = model_.stages[static_cast<std::size_t>(stage_)];
-  const std::int64_t steps = step_ - stage_begin_;
-  if (static_cast<double>(steps) * world_.dt >= stage.max_time - 0.5 * world_.dt) return true;
-  if (stage.kinetic_ratio <= 0.0 || steps == 0 || steps % kStageCheck != 0) return false;
   return taped_verdict(communicator_, [&] {
     const Measures m = measure();
     return m.kinetic.value() < stage.kinetic_ratio * m.elastic.value();

@@ -48,6 +48,7 @@ class Simulation::Engine {
   std::int64_t num_particles_ = 0;
   int stage_ = 0;
   bool stopped_ = false;
+  bool is_over_ = false;  ///< the last stage is
   bool is_in_step_ = false;     ///< or one was not ended
   std::exception_ptr failure_;  ///< what run() threw
   std::string restored_from_;   ///< checkpoint; empty: a new run
@@ -103,6 +104,10 @@ class Simulation::EngineOf final : public Simulation::Engine {
   void size_chunks();
   void update_stage();
   void enter_stage(int stage);
+  [[nodiscard]] bool is_last_stage() const;
+  [[nodiscard]] bool last_stage_ends();
+  [[nodiscard]] bool stage_time_is_over(std::int64_t step) const;
+  [[nodiscard]] bool stage_may_end(std::int64_t step) const;
   [[nodiscard]] bool stage_is_over();
   [[nodiscard]] CheckNumbers check_numbers();
   // engine_watch.cpp

@@ -84,8 +84,8 @@ void Simulation::EngineOf<Dim>::judge(const CheckNumbers& answer) {
   if (is_harmless(answer)) return;
   if (!std::isfinite(answer.distance) || !std::isfinite(answer.speed)) {
     throw AgreedError(
-        fmt::format("at step {} the state is no longer finite: {}; a smaller time.step, more "
-                    "damping or less overlap at the start would help",
+        fmt::format("at step {} the state is no longer finite: {}; start the run from step 0 with "
+                    "a smaller time.step, more damping or less overlap",
                     step_, describe_fastest()));
   }
   judge_balance(answer);
@@ -217,11 +217,12 @@ void Simulation::EngineOf<Dim>::judge_overlap(double share) {
   const bool is_error = share > limits.overlap_error;
   if (!is_error && (has_warned_ || share <= limits.overlap_warning)) return;
   const std::string what = fmt::format(
-      "an overlap of {:.3g} of the smaller radius is beyond limits.{} = {:.3g}; {}; stiffer "
-      "contacts or a smaller time.step would help",
+      "an overlap of {:.3g} of the smaller radius is beyond limits.{} = {:.3g}; {}; a higher "
+      "limit lets the run continue, also from a checkpoint on; for stiffer contacts, start the run "
+      "from step 0",
       share, is_error ? "overlap_error" : "overlap_warning",
       is_error ? limits.overlap_error : limits.overlap_warning, describe_worst_overlap());
-  if (is_error) throw AgreedError(fmt::format("at step {} {}", step_, what));
+  if (is_error) throw AgreedError(fmt::format("at step {} {}", step_, what), true);
   has_warned_ = true;
   if (communicator_.is_root()) note(what, true);
 }

@@ -104,7 +104,10 @@ std::int64_t Simulation::run(std::int64_t num_steps) {
   return between_steps("run").run(num_steps);
 }
 bool Simulation::stopped() const {
-  return engine().stopped_;
+  return engine().stopped_ || engine().is_over_;
+}
+bool Simulation::is_over() const {
+  return engine().is_over_;
 }
 std::int64_t Simulation::step() const {
   return engine().step_;

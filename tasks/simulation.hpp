@@ -95,7 +95,8 @@ class Simulation {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
 
-  /// Advances by at most `num_steps`; fewer when a stop was requested. @return steps done
+  /// Advances by at most `num_steps`; fewer when a stop was requested or the last stage ends.
+  /// @return steps done
   /// Errors: AgreedError, the same on every rank and between two steps: a particle left a domain
   /// that it may not leave, an overlap is beyond the limit, a particle or wall moved farther than
   /// half the skin between rebuilds, particles, contacts or bonds are missing. RunError on one rank
@@ -108,8 +109,9 @@ class Simulation {
   /// Ends the run() of this process that is under way, or else its next one, on all ranks and
   /// within a few steps; then the request is forgotten. Callable from a signal handler.
   static void request_stop() noexcept;
-  /// All ranks agreed to stop the last run(); the next one continues.
+  /// All ranks agreed to stop the last run(), and the next one continues; or is_over().
   [[nodiscard]] bool stopped() const;
+  [[nodiscard]] bool is_over() const;  ///< the last stage has ended, and with it the run
 
   [[nodiscard]] std::int64_t step() const;
   [[nodiscard]] double time() const;  ///< [s]

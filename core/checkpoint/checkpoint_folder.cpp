@@ -17,9 +17,32 @@ constexpr std::string_view kPrefix = "step_";
 constexpr std::string_view kPart = ".part", kOld = ".old";
 constexpr std::uint64_t kLargestManifest = std::uint64_t{1} << 28;
 
+/// The step in the name of a complete checkpoint; -1 for all other names.
+std::int64_t step_of(const std::string& name) {
+  std::int64_t step = -1;
+  if (!name.starts_with(kPrefix)) return step;
+  (void)std::from_chars(name.data() + kPrefix.size(), name.data() + name.size(), step);
+  return name == fmt::format("{}{:09}", kPrefix, step) ? step : -1;
+}
+
 bool is_unfinished(const fs::path& path) {
-  const std::string name = path.filename().string();
-  return name.starts_with(kPrefix) && (name.ends_with(kPart) || name.ends_with(kOld));
+  const std::string ending = path.extension().string();
+  return (ending == kPart || ending == kOld) && step_of(path.stem().string()) >= 0;
+}
+
+/// `rank_00000.bin`, of any rank.
+bool is_rank_file(const std::string& name) {
+  std::size_t rank = 0;
+  constexpr std::string_view prefix = "rank_";
+  if (!name.starts_with(prefix)) return false;
+  (void)std::from_chars(name.data() + prefix.size(), name.data() + name.size(), rank);
+  return name == rank_file_name(rank);
+}
+
+/// Removes a checkpoint, unless there are other files in it.
+void remove_checkpoint(const fs::path& path) {
+  if (!fs::exists(path) || !CheckpointFolder::foreign_file(path.string()).empty()) return;
+  fs::remove_all(path);
 }
 
 std::vector<fs::path> unfinished_in(const std::string& folder) {
@@ -42,16 +65,6 @@ void sync_names_of(const std::string& folder) {
     } catch (const FileError&) {
     }
   }
-}
-
-/// The step in the name of a complete checkpoint; -1 for all other names.
-std::int64_t step_of(const fs::path& path) {
-  const std::string name = path.filename().string();
-  if (!name.starts_with(kPrefix)) return -1;
-  std::int64_t step = -1;
-  const char *begin = name.data() + kPrefix.size(), *end = name.data() + name.size();
-  const auto result = std::from_chars(begin, end, step);
-  return result.ec == std::errc{} && result.ptr == end ? step : -1;
 }
 
 template <class Work>
@@ -86,18 +99,22 @@ void CheckpointFolder::commit(const Manifest& manifest) const {
   sync_folder(from);
   or_file_error("replace", to, [&] {
     if (!fs::exists(to)) return;
-    fs::remove_all(old);
+    remove_checkpoint(old);
     fs::rename(to, old);
   });
   rename_durably(from, to);
   sync_names_of(path_);
-  std::error_code ignored;
-  fs::remove_all(old, ignored);
+  try {
+    remove_checkpoint(old);
+  } catch (const fs::filesystem_error&) {  // the new one is complete all the same
+  }
 }
 
 void CheckpointFolder::discard(std::int64_t step) const noexcept {
-  std::error_code ignored;
-  fs::remove_all(unfinished(step), ignored);
+  try {
+    remove_checkpoint(unfinished(step));
+  } catch (const std::exception&) {  // the next run removes it
+  }
 }
 
 void CheckpointFolder::recover() const {
@@ -112,7 +129,7 @@ void CheckpointFolder::recover() const {
 void CheckpointFolder::clean() const {
   recover();
   or_file_error("clean", path_, [&] {
-    for (const fs::path& path : unfinished_in(path_)) fs::remove_all(path);
+    for (const fs::path& path : unfinished_in(path_)) remove_checkpoint(path);
   });
 }
 
@@ -120,9 +137,23 @@ void CheckpointFolder::prune(std::int64_t step, int keep) const {
   or_file_error("remove old checkpoints in", path_, [&] {
     int kept = 0;
     for (const std::int64_t s : steps()) {
-      if (s > step || ++kept > keep) fs::remove_all(complete(s));
+      if (s > step || ++kept > keep) remove_checkpoint(complete(s));
     }
   });
+}
+
+bool CheckpointFolder::is_name(const std::string& name) {
+  return step_of(name) >= 0 || is_unfinished(name);
+}
+
+std::string CheckpointFolder::foreign_file(const std::string& checkpoint) {
+  if (!fs::is_directory(checkpoint)) return checkpoint;
+  for (const auto& entry : fs::directory_iterator(checkpoint)) {
+    const std::string name = entry.path().filename().string();
+    const bool is_part = name == kManifestName || is_rank_file(name);
+    if (!is_part || !fs::is_regular_file(entry.path())) return entry.path().string();
+  }
+  return {};
 }
 
 std::vector<std::int64_t> CheckpointFolder::steps() const {
@@ -130,7 +161,8 @@ std::vector<std::int64_t> CheckpointFolder::steps() const {
   or_file_error("list", path_, [&] {
     if (!fs::is_directory(path_)) return;
     for (const auto& entry : fs::directory_iterator(path_)) {
-      if (const std::int64_t step = step_of(entry.path()); step >= 0 && entry.is_directory())
+      if (const std::int64_t step = step_of(entry.path().filename().string());
+          step >= 0 && entry.is_directory())
         steps.push_back(step);
     }
   });

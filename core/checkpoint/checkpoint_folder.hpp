@@ -34,11 +34,18 @@ class CheckpointFolder {
   /// A run that ended while it replaced a checkpoint of the same step has left the former one under
   /// another name: gives it back its own. One rank, while nobody writes.
   void recover() const;
-  /// Recovers, then removes all unfinished ones. One rank, while nobody writes.
+  /// Recovers, then removes all unfinished ones but those with other files in them. One rank, while
+  /// nobody writes.
   void clean() const;
   /// After a commit at `step`: keeps the newest `keep`, and none of later steps, which an abandoned
-  /// run left. One rank.
+  /// run left. One with other files in it stays. One rank.
   void prune(std::int64_t step, int keep) const;
+
+  /// Whether an entry of the folder has the name of a checkpoint, complete or not.
+  [[nodiscard]] static bool is_name(const std::string& name);
+  /// A file in a checkpoint that is no part of it, or `checkpoint` itself when it is no folder;
+  /// empty when there is none. Errors: filesystem_error.
+  [[nodiscard]] static std::string foreign_file(const std::string& checkpoint);
 
   /// Steps of the complete ones, newest first; empty without a folder.
   [[nodiscard]] std::vector<std::int64_t> steps() const;

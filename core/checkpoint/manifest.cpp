@@ -14,7 +14,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 constexpr const char* kFormat = "barchan checkpoint";
 constexpr std::string_view kHashMember = ",\n\"xxh3\": \"";
 constexpr std::string_view kEnd = "\"}\n";
@@ -78,13 +78,25 @@ ManifestFile read_file(const ordered_json& node, std::size_t rank) {
   return f;
 }
 
-Manifest read_manifest(const ordered_json& node) {
+SourceRecord read_source(const ordered_json& node) {
+  SourceRecord source;
+  source.kind = node.at("kind").get<std::string>();
+  source.hash = parse_hex(node.at("hash").get<std::string>());
+  for (const auto& [key, value] : node.at("keys").items())
+    source.keys.push_back({key, value.get<std::string>()});
+  return source;
+}
+
+Manifest read_manifest(const ordered_json& node, const std::string& path) {
   if (node.at("format").get<std::string>() != kFormat)
     throw std::invalid_argument("not a checkpoint's manifest");
   const std::int64_t version = count_at(node, "version");
   if (version != kVersion) {
-    throw std::invalid_argument(
-        fmt::format("format version {}, and this program reads version {}", version, kVersion));
+    throw InputError(
+        SourcePlace{path, 0, 0},
+        fmt::format("a checkpoint of format version {}, and this program reads version {}", version,
+                    kVersion),
+        "go on with the version of barchan that wrote it, or start the run anew");
   }
   Manifest m;
   m.step = count_at(node, "step");
@@ -92,6 +104,7 @@ Manifest read_manifest(const ordered_json& node) {
   m.dimension = static_cast<int>(count(node.at("dimension"), "dimension", 3));
   m.title = node.at("title").get<std::string>();
   for (const auto& file : node.at("files")) m.files.push_back(read_file(file, m.files.size()));
+  for (const auto& source : node.at("sources")) m.sources.push_back(read_source(source));
   if (m.files.empty() || (m.dimension != 2 && m.dimension != 3))
     throw std::invalid_argument("lists no files, or no dimension");
   return m;
@@ -134,6 +147,12 @@ std::string manifest_text(const Manifest& manifest) {
                      {"wall_contacts", f.wall_contacts},
                      {"bonds", f.bonds}});
   }
+  auto& sources = node["sources"] = ordered_json::array();
+  for (const SourceRecord& s : manifest.sources) {
+    ordered_json keys = ordered_json::object();
+    for (const SourceKey& k : s.keys) keys[k.key] = k.value;
+    sources.push_back({{"kind", s.kind}, {"hash", hex(s.hash)}, {"keys", std::move(keys)}});
+  }
   std::string text = node.dump(1, ' ', false, ordered_json::error_handler_t::replace);
   text.pop_back();  // the closing brace, which follows the checksum
   while (text.back() == '\n') text.pop_back();
@@ -144,7 +163,9 @@ std::string manifest_text(const Manifest& manifest) {
 Manifest parse_manifest(const std::string& text, const std::string& file) {
   const std::string json = verified_part(text, file);
   try {
-    return read_manifest(ordered_json::parse(json));
+    return read_manifest(ordered_json::parse(json), file);
+  } catch (const InputError&) {
+    throw;
   } catch (const std::exception& e) {
     refuse(file, std::string("is not valid: ") + e.what());
   }

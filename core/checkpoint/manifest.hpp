@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <barchan/core/checkpoint/rank_file.hpp>
+#include <barchan/core/source_record.hpp>
 
 namespace barchan {
 
@@ -25,7 +26,8 @@ struct Manifest {
   double time = 0.0;  ///< [s]
   int dimension = 2;
   std::string title;
-  std::vector<ManifestFile> files;  ///< by rank
+  std::vector<ManifestFile> files;    ///< by rank
+  std::vector<SourceRecord> sources;  ///< of the particles that the run began with; may be empty
 
   [[nodiscard]] ManifestFile totals() const;
 };

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <barchan/core/deck/boxes.hpp>
+#include <barchan/core/deck/canonical.hpp>
 #include <barchan/core/deck/read_regions.hpp>
 #include <barchan/core/deck/readers.hpp>
 #include <barchan/core/deck/values.hpp>
@@ -157,6 +158,7 @@ void read_particles(const TableReader& root, DeckDraft& draft) {
     const std::string kind = read_kind(*node);
     const TableReader table(*node, root.dimension(), "[[particles]]", kind);
     ParticleSource source = read_common(table, draft, kind);
+    source.record = {kind, source.place.line, canonical_keys(*node), 0};
     if (kind == "file") source.kind = read_file_source(table, draft);
     if (kind == "lattice") source.kind = read_lattice(table, draft.deck.model);
     if (kind == "packing") source.kind = read_packing(table, draft.deck.model);

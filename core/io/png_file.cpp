@@ -2,9 +2,11 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <png.h>
+#include <zlib.h>
 
 #include <barchan/core/error.hpp>
 #include <barchan/core/io/canvas.hpp>
@@ -29,6 +31,25 @@ std::uint8_t srgb_from_linear(float value) {
   return kTable[static_cast<std::size_t>(clamped * (kSize - 1) + 0.5F)];
 }
 
+constexpr std::size_t kHeaderSize = 8 + 12 + 13;  // signature and the chunk IHDR
+
+/// Big-endian, as PNG has numbers.
+std::string four_bytes(std::uint32_t number) {
+  std::string bytes;
+  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(number >> shift & 0xff);
+  return bytes;
+}
+
+/// The standard keyword for the program that wrote a picture:
+/// | length | tEXt Software 0 name | CRC |
+std::string software_chunk() {
+  constexpr std::string_view text("tEXtSoftware\0barchan", 20);
+  const auto* bytes = reinterpret_cast<const Bytef*>(text.data());
+  const auto sum = static_cast<std::uint32_t>(::crc32(0, bytes, static_cast<uInt>(text.size())));
+  return four_bytes(static_cast<std::uint32_t>(text.size() - 4)) + std::string(text) +
+         four_bytes(sum);
+}
+
 }  // namespace
 
 void Canvas::write_png(const std::string& path) const {
@@ -49,7 +70,10 @@ void Canvas::write_png(const std::string& path) const {
       png_image_write_to_memory(&image, encoded.data(), &size, 0, bytes.data(), 0, nullptr);
   if (done == 0) throw RunError("cannot encode " + path + ": " + image.message);
   OutputFile file(path);
-  file.write(std::string_view(encoded).substr(0, size));
+  const std::string_view png = std::string_view(encoded).substr(0, size);
+  file.write(png.substr(0, kHeaderSize));
+  file.write(software_chunk());
+  file.write(png.substr(kHeaderSize));
   file.commit();
 }
 

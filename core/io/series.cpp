@@ -24,6 +24,29 @@ std::string header_of(std::span<const std::string> further_columns) {
   return header;
 }
 
+std::string_view first_line(std::string_view text) {
+  return text.substr(0, text.find('\n'));
+}
+
+void replace_file(const std::string& path, const std::string& text) {
+  OutputFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+/// Keeps a table with other columns under another name. @return the name
+std::string put_aside(const std::string& path, const std::string& text, std::int64_t step) {
+  const std::string header(first_line(text));
+  const bool is_ours = header.starts_with(header_of({}));
+  const std::string kept = is_ours ? kept_rows(text, path, header, step) : text;
+  const std::filesystem::path whole(path);
+  std::filesystem::path former;
+  for (int number = 1; former.empty() || std::filesystem::exists(former); ++number)
+    former = whole.parent_path() / fmt::format("{}_{}.csv", whole.stem().string(), number);
+  replace_file(former.string(), kept);
+  return former.string();
+}
+
 }  // namespace
 
 std::string kept_rows(std::string_view text, const std::string& path, const std::string& header,
@@ -83,6 +106,7 @@ SeriesWriter::SeriesWriter(std::string path, std::size_t num_further, const char
 
 SeriesWriter::SeriesWriter(SeriesWriter&& other) noexcept
     : path_(std::move(other.path_)),
+      former_(std::move(other.former_)),
       num_further_(other.num_further_),
       file_(std::exchange(other.file_, nullptr)),
       size_(other.size_) {}
@@ -92,6 +116,8 @@ SeriesWriter::~SeriesWriter() {
 }
 
 std::string SeriesWriter::damage(std::int64_t restart, std::int64_t interval) const {
+  if (!former_.empty())
+    return path_ + " had other columns than this run: its rows are kept in " + former_;
   const std::string what = damage_of_rows(read_text_file(path_), restart, interval);
   if (what.empty()) return {};
   return path_ + ": " + what +
@@ -109,10 +135,15 @@ SeriesWriter SeriesWriter::create(const std::string& path,
 SeriesWriter SeriesWriter::resume(const std::string& path,
                                   std::span<const std::string> further_columns, std::int64_t step) {
   if (!std::filesystem::exists(path)) return create(path, further_columns);
-  const std::string kept = kept_rows(read_text_file(path), path, header_of(further_columns), step);
-  OutputFile file(path);
-  file.write(kept);
-  file.commit();
+  const std::string text = read_text_file(path), header = header_of(further_columns);
+  if (!text.empty() && first_line(text) != header) {
+    const std::string former = put_aside(path, text, step);
+    SeriesWriter series = create(path, further_columns);
+    series.former_ = former;
+    return series;
+  }
+  const std::string kept = kept_rows(text, path, header, step);
+  replace_file(path, kept);
   SeriesWriter series(path, further_columns.size(), "ab");
   series.size_ = static_cast<std::int64_t>(kept.size());
   return series;

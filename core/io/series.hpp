@@ -39,8 +39,9 @@ class SeriesWriter {
   static SeriesWriter create(const std::string& path, std::span<const std::string> further_columns);
 
   /// Goes on with an existing table after a restart at `step`: rows with a greater step and an
-  /// unfinished last row are removed; without a file, starts a new one.
-  /// @throws InputError when the header of the file names other columns; RunError
+  /// unfinished last row are removed; without a file, starts a new one. A table with other columns
+  /// is kept as `series_1.csv` (or the next number that is free), and a new one begins.
+  /// @throws InputError for a damaged row; RunError
   static SeriesWriter resume(const std::string& path, std::span<const std::string> further_columns,
                              std::int64_t step);
 
@@ -48,7 +49,8 @@ class SeriesWriter {
   SeriesWriter(SeriesWriter&& other) noexcept;
   SeriesWriter& operator=(SeriesWriter&&) = delete;
 
-  /// What was odd about the rows that were kept, with the file's name; empty where nothing was.
+  /// What was odd about the rows that were kept, or where they are now, with the file's name; empty
+  /// where nothing was.
   [[nodiscard]] std::string damage(std::int64_t restart, std::int64_t interval) const;
 
   /// @param further  one value for each further column; none leaves its cell empty
@@ -59,7 +61,7 @@ class SeriesWriter {
   SeriesWriter(std::string path, std::size_t num_further, const char* mode);
   void put(const std::string& text);
 
-  std::string path_;
+  std::string path_, former_;  ///< former: where rows with other columns are kept; may be empty
   std::size_t num_further_ = 0;
   std::FILE* file_ = nullptr;
   std::int64_t size_ = 0;  ///< [B], so far

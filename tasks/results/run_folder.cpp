@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -33,21 +34,10 @@ fs::path nearest_existing(const fs::path& path) {
   return parent;
 }
 
-bool is_snapshot(const fs::path& file) {
-  const std::string ending = file.extension().string();
-  return ending == ".vtp" || ending == ".pvtp" || ending == ".pvd";
-}
-
-void remove_results(const std::string& path) {
-  for (const char* name :
-       {"run.json", "series.csv", "picture.png", "trace.json", "log.txt", "left_domain.csv"})
-    fs::remove(path + "/" + name);
-  fs::remove_all(path + "/checkpoints");
-  const fs::path snapshots = path + "/snapshots";
-  if (!fs::is_directory(snapshots)) return;
-  for (const auto& entry : fs::directory_iterator(snapshots)) {
-    if (is_snapshot(entry.path())) fs::remove(entry.path());
-  }
+/// Nothing in it but the lock of a run that has just begun, or died before it did.
+bool is_empty(const std::string& folder) {
+  return std::all_of(fs::directory_iterator(folder), fs::directory_iterator(),
+                     [](const auto& entry) { return entry.path().filename() == kLockName; });
 }
 
 }  // namespace
@@ -61,10 +51,13 @@ void RunFolder::check(bool may_replace) const {
   std::error_code error;
   const fs::file_status status = fs::status(path_, error);
   if (status.type() == fs::file_type::directory) {
-    if (!may_replace)
+    check_writable(path_, path_);
+    if (may_replace)
+      (void)own_files();
+    else if (!is_empty(path_))
       refuse(path_, "the output folder already exists",
              "give another one, or --force to replace its results");
-    return check_writable(path_, path_);
+    return;
   }
   if (fs::exists(status)) refuse(path_, "the output folder is a file", kElsewhere);
   const fs::path parent = nearest_existing(path_);
@@ -73,18 +66,37 @@ void RunFolder::check(bool may_replace) const {
   check_writable(parent, path_);
 }
 
+OwnFiles RunFolder::own_files() const {
+  try {
+    return find_own_files(path_);
+  } catch (const fs::filesystem_error& e) {
+    refuse(path_, "cannot read the output folder: " + e.code().message(), kElsewhere);
+  }
+}
+
 void RunFolder::begin() const {
+  const OwnFiles own = own_files();
   try {
     fs::create_directories(path_ + "/snapshots");
-    remove_results(path_);
+    remove_files(own);
+    std::error_code ignored;
+    fs::remove(path_ + "/checkpoints", ignored);  // where it is empty now
   } catch (const fs::filesystem_error& e) {
     refuse(path_, "cannot prepare the output folder: " + e.code().message(), kElsewhere);
   }
 }
 
 void RunFolder::resume() const {
+  (void)own_files();
   try {
     fs::create_directories(path_ + "/snapshots");
+  } catch (const fs::filesystem_error& e) {
+    refuse(path_, "cannot go on in the output folder: " + e.code().message(), kElsewhere);
+  }
+}
+
+void RunFolder::reopen() const {
+  try {
     fs::remove(path_ + "/run.json");  // is there only once a run has ended
   } catch (const fs::filesystem_error& e) {
     refuse(path_, "cannot continue in the output folder: " + e.code().message(), kElsewhere);

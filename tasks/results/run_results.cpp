@@ -35,13 +35,12 @@ RunResults::RunResults(Simulation& simulation, RunFolder folder, const ParticleS
       snapshots_every_(simulation.model().output.snapshots_every),
       snapshots_(folder_.file("snapshots"), Densities(simulation.model(), particles)) {
   if (snapshots_every_ <= 0) snapshots_every_ = kNever;
-  agree(simulation.communicator(), [&] {
-    if (simulation.communicator().is_root()) spec_.continues ? folder_.resume() : folder_.begin();
-  });
   const bool continues = spec_.continues;
-  log_.emplace(simulation, folder_.file("log.txt"), continues);
-  list_departures();
+  on_rank_zero([&] { continues ? folder_.resume() : folder_.begin(); });
   series_.emplace(simulation, folder_.file("series.csv"), spec_.rings, continues);
+  list_departures();
+  if (continues) on_rank_zero([&] { folder_.reopen(); });
+  log_.emplace(simulation, folder_.file("log.txt"), continues);
   if (continues) {
     if (const auto damage = series_->damage(simulation, series_every_); !damage.empty())
       log_->warn(damage);
@@ -59,9 +58,14 @@ std::int64_t RunResults::next_step() const {
   return std::min(next_multiple(step, series_every_), next_multiple(step, snapshots_every_));
 }
 
-void RunResults::list_departures() {
+void RunResults::on_rank_zero(const std::function<void()>& work) {
   agree(simulation_.communicator(), [&] {
-    if (!simulation_.communicator().is_root()) return;
+    if (simulation_.communicator().is_root()) work();
+  });
+}
+
+void RunResults::list_departures() {
+  on_rank_zero([&] {
     const DepartureTable table(folder_.file("left_domain.csv"), simulation_.model().dimension,
                                simulation_.step());
     simulation_.on_departure([table](std::span<const Departure> left) { table.append(left); });
@@ -94,9 +98,7 @@ RunSummary RunResults::finish(bool interrupted) {
   if (simulation_.model().output.picture)
     write_final_picture(simulation_, folder_.file("picture.png"));
   RunSummary summary = summarize(simulation_, spec_.deck, spec_.limit, interrupted);
-  agree(simulation_.communicator(), [&] {
-    if (simulation_.communicator().is_root()) write_run_json(folder_.file("run.json"), summary);
-  });
+  on_rank_zero([&] { write_run_json(folder_.file("run.json"), summary); });
   log_->add(fmt::format("{} at step {}", interrupted ? "interrupted" : "done", step));
   return summary;
 }

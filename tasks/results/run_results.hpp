@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,9 +34,9 @@ struct ResultsSpec {
 /// the folder cannot be made; RunError when a file cannot be written.
 class RunResults {
  public:
-  /// Clears the folder and writes the present state; the caller has called RunFolder::check. When
-  /// it continues, removes the results of later steps, so that the files end like those of a run
-  /// without interruption.
+  /// Clears the folder and writes the present state; the caller holds a FolderClaim, or has called
+  /// RunFolder::check. When it continues, removes the results of later steps, so that the files end
+  /// like those of a run without interruption.
   /// @param simulation  lives longer
   RunResults(Simulation& simulation, RunFolder folder, const ParticleSet& particles,
              ResultsSpec spec);
@@ -50,6 +51,7 @@ class RunResults {
   RunSummary finish(bool interrupted = false);
 
  private:
+  void on_rank_zero(const std::function<void()>& work);
   void list_departures();
 
   Simulation& simulation_;

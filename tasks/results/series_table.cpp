@@ -22,9 +22,8 @@ std::vector<std::string> columns_of(const Model& model, const std::vector<Ring>&
       columns.push_back(name + "_" + kAxes[static_cast<std::size_t>(c)]);
   };
   add_vector("momentum");
-  for (const char* name : {"bonds", "broken_bonds", "max_speed", "stage"})
+  for (const char* name : {"bonds", "broken_bonds", "max_speed", "stage", "particles"})
     columns.emplace_back(name);
-  if (model.domain.outside == OutsidePolicy::Delete) columns.emplace_back("particles");
   const std::vector<std::string> names = wall_columns(model.walls);
   for (std::size_t w = 0; w < model.walls.size(); ++w) {
     add_vector(names[w] + "_force");
@@ -44,9 +43,8 @@ Cells values_of(const Simulation& simulation, const Measures& m, const Cells& di
   Cells values{m.elastic.value(), m.gravitational.value()};
   for (int c = 0; c < model.dimension; ++c) values.emplace_back(m.momentum[c].value());
   values.insert(values.end(), {static_cast<double>(m.bonds), static_cast<double>(m.broken_bonds),
-                               m.max_speed, static_cast<double>(simulation.stage() + 1)});
-  if (model.domain.outside == OutsidePolicy::Delete)
-    values.emplace_back(static_cast<double>(simulation.num_particles()));
+                               m.max_speed, static_cast<double>(simulation.stage() + 1),
+                               static_cast<double>(simulation.num_particles())});
   const auto walls = simulation.walls();
   for (std::size_t w = 0; w < walls.size(); ++w) {
     for (int c = 0; c < model.dimension; ++c) values.emplace_back(walls[w].force[c]);

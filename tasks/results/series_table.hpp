@@ -16,7 +16,7 @@ namespace barchan {
 class SeriesTable {
  public:
   /// Starts the file on rank 0. Collective. Errors: RunError.
-  /// @param continues  keeps the rows before the present step. Errors: InputError: other columns
+  /// @param continues  keeps the rows before the present step. Errors: InputError: a damaged row
   SeriesTable(const Simulation& simulation, const std::string& path, std::vector<Ring> rings,
               bool continues = false);
 

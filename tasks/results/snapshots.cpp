@@ -1,12 +1,13 @@
 #include <barchan/tasks/results/snapshots.hpp>
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include <barchan/tasks/results/agree.hpp>
+#include <barchan/tasks/results/own_files.hpp>
 
 namespace barchan {
 namespace {
@@ -51,17 +52,6 @@ std::string piece_name(std::int64_t step, int rank) {
   return fmt::format("step_{:09}_rank_{}.vtp", step, rank);
 }
 
-constexpr std::string_view kPrefix = "step_";
-
-/// The step in the name of a snapshot or its piece; -1 for other files.
-std::int64_t step_of(const std::string& name) {
-  std::int64_t step = -1;
-  if (!name.starts_with(kPrefix)) return step;
-  const auto result =
-      std::from_chars(name.data() + kPrefix.size(), name.data() + name.size(), step);
-  return result.ec == std::errc{} ? step : -1;
-}
-
 }  // namespace
 
 Densities::Densities(const Model& model, const ParticleSet& particles) {
@@ -88,8 +78,9 @@ void SnapshotWriter::resume(const Simulation& simulation, std::int64_t every) {
     std::vector<fs::path> obsolete;
     for (const auto& entry : fs::directory_iterator(folder_)) {
       const std::string name = entry.path().filename().string();
-      const std::int64_t step = step_of(name);
-      if (step < 0) continue;
+      const std::optional<std::int64_t> found = snapshot_step(name);
+      if (!found) continue;
+      const std::int64_t step = *found;
       const bool stays = step < simulation.step() && step % every == 0;
       if (!stays)
         obsolete.push_back(entry.path());

@@ -91,7 +91,7 @@ ManifestFile listed(const RankFileSeal& seal, std::span<const CheckpointShare> s
 std::string write_some(const std::string& path, std::int64_t step = 500) {
   const CheckpointFolder folder(path);
   folder.begin(step);
-  Manifest manifest{step, 0.1, 2, "a run", {}};
+  Manifest manifest{step, 0.1, 2, "a run", {}, {}};
   for (std::uint32_t rank = 0; rank < 2; ++rank) {
     const std::vector<CheckpointShare> shares{some_share(12, 100 * rank + 1),
                                               some_share(8, 100 * rank + 51)};
@@ -222,7 +222,7 @@ TEST(Checkpoint, SurvivesAnyBytes) {
 }
 
 TEST(Checkpoint, RefusesAManifestWithNumbersThatAreNoCounts) {
-  const Manifest manifest{5, 0.1, 2, "a run", {{{64, 1}, 0, 3, 20, 5, 2, 1}}};
+  const Manifest manifest{5, 0.1, 2, "a run", {{{64, 1}, 0, 3, 20, 5, 2, 1}}, {}};
   const std::string text = manifest_text(manifest);
   EXPECT_NO_THROW((void)parse_manifest(text, "file"));
   for (const auto& [from, to] :

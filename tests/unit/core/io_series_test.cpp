@@ -55,9 +55,17 @@ TEST_F(Series, DropsRowsAfterTheRestartAndUnfinishedOnes) {
   EXPECT_TRUE(read_text_file(path_).ends_with("200,0,0,0,0,0\n"));
 }
 
-TEST_F(Series, RefusesToGoOnWithOtherColumns) {
-  { SeriesWriter series = SeriesWriter::create(path_, columns_); }
-  EXPECT_THROW(SeriesWriter::resume(path_, std::vector<std::string>{"else"}, 0), InputError);
+TEST_F(Series, KeepsRowsWithOtherColumnsInAFileOfTheirOwn) {
+  for (const char* column : {"plate_y", "else", "more"}) {
+    SeriesWriter series = SeriesWriter::resume(path_, std::vector<std::string>{column}, 100);
+    EXPECT_NE(series.damage(200, 100), "") << column;
+    for (const int step : {100, 200}) series.append({step, 0, 0, 0, 0}, Cells{0.0});
+  }
+  const std::string header = "step,time,kinetic_energy,contacts,max_overlap,";
+
+  EXPECT_EQ(read_text_file(folder_.at("series_1.csv")), header + "plate_y\n100,0,0,0,0,0\n");
+  EXPECT_EQ(read_text_file(folder_.at("series_2.csv")), header + "else\n100,0,0,0,0,0\n");
+  EXPECT_EQ(read_text_file(path_), header + "more\n100,0,0,0,0,0\n200,0,0,0,0,0\n");
 }
 
 TEST_F(Series, StartsAnewWithoutAFile) {

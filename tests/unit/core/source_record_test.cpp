@@ -1,0 +1,86 @@
+#include <barchan/core/source_record.hpp>
+
+#include <gtest/gtest.h>
+
+#include <barchan/core/checkpoint/manifest.hpp>
+#include <barchan/core/deck/deck.hpp>
+#include <barchan/core/generators/make_particles.hpp>
+
+#include "deck_text.hpp"
+
+namespace barchan {
+namespace {
+
+using deck_test::Edit;
+using deck_test::edited;
+using deck_test::good_deck;
+
+std::vector<SourceRecord> records_of(std::initializer_list<Edit> edits) {
+  const Deck deck = parse_deck(
+      edited(edited(good_deck(), {{"count = 1000", "count = 100"}}), edits), "deck.toml");
+  std::vector<std::size_t> begins;
+  const ParticleSet made = make_particles(deck.model, deck.sources, begins);
+  return make_records(deck.sources, made, begins);
+}
+
+std::string difference_of(std::initializer_list<Edit> edits) {
+  return source_differences(records_of({}), records_of(edits));
+}
+
+TEST(SourceRecord, IsTheSameForTheSameParticles) {
+  EXPECT_EQ(difference_of({}), "");
+  EXPECT_EQ(difference_of({{"radius = 0.45", "radius = 45e-2"}}), "");
+  EXPECT_EQ(difference_of({{"count = 24\n", "count = 24\nstart_angle = 0\n"}}), "");
+  EXPECT_EQ(difference_of({{"young_modulus = 1e6", "young_modulus = 2e6"}}), "");
+  EXPECT_EQ(difference_of({{"\"pipe\"", "\"tube\""}, {"\"pipe\"", "\"tube\""}}), "");
+}
+
+TEST(SourceRecord, NamesTheKeysThatDiffer) {
+  EXPECT_EQ(difference_of({{"count = 100", "count = 99"}}),
+            "[[particles]] 1 (packing, line 30): count was 100 and is 99");
+  EXPECT_EQ(
+      difference_of({{"count = 24", "count = 25\nomega = 1"}}),
+      "[[particles]] 2 (ring, line 37): count was 24 and is 25, omega was not given and is 1");
+  EXPECT_EQ(difference_of({{"bond = \"pipe\"\n", ""}}),
+            "[[particles]] 2 (ring, line 37): bond was \"pipe\" and is not given");
+  EXPECT_NE(difference_of({{"radius = 0.6 }", "radius = 0.7 }"}})
+                .find("holes.1.radius was 0.6 and is 0.7"),
+            std::string::npos);
+}
+
+TEST(SourceRecord, NamesTablesThatWereAddedOrAreGone) {
+  const auto two = records_of({});
+  const std::vector<SourceRecord> ring{two[1]};
+
+  EXPECT_EQ(source_differences(two, ring), "[[particles]] 1 (packing) of the checkpoint is gone");
+  EXPECT_EQ(source_differences(ring, two), "[[particles]] 1 (packing, line 30) was added");
+  EXPECT_EQ(source_differences({}, two), "");  // particles of a program have no records
+}
+
+TEST(SourceRecord, TakesOtherRoundingOfAGeneratorForTheSame) {
+  auto other = records_of({});
+  other[1].hash += 1;
+  EXPECT_EQ(source_differences(records_of({}), other), "");
+
+  for (SourceRecord& record : other) record.keys.push_back({"path", "\"some.csv\""});
+  auto saved = other;
+  saved[1].hash += 1;
+  EXPECT_EQ(source_differences(saved, other),
+            "[[particles]] 2 (ring, line 37): the contents of \"some.csv\" differ");
+}
+
+TEST(SourceRecord, TravelsInAManifest) {
+  Manifest manifest{5, 0.1, 2, "a run", {{{64, 1}, 0, 3, 20, 5, 2, 1}}, records_of({})};
+
+  const Manifest read = parse_manifest(manifest_text(manifest), "file");
+
+  ASSERT_EQ(read.sources.size(), 2U);
+  for (std::size_t s = 0; s < 2; ++s) {
+    EXPECT_EQ(read.sources[s].kind, manifest.sources[s].kind);
+    EXPECT_EQ(read.sources[s].keys, manifest.sources[s].keys);
+    EXPECT_EQ(read.sources[s].hash, manifest.sources[s].hash);
+  }
+}
+
+}  // namespace
+}  // namespace barchan
