@@ -92,7 +92,7 @@ class SteadyStep : public testing::TestWithParam<std::string> {};
 TEST_P(SteadyStep, AllocatesNothing) {
   for (const bool is_loaded : {false, true}) {
     Scenario s = is_loaded ? soil_with_ring_and_plate() : moving_walls();
-    if (is_loaded) s.model.stages = {Stage{"settle", 1e-3}, Stage{"load", 10.0}};
+    if (is_loaded) s.model.stages = {Stage{"settle", 1e-3, 1e6}, Stage{"load", 0.1}};
     for (const int threads : {1, 2}) {
       RunOptions options;
       options.exchange = GetParam();

@@ -39,7 +39,7 @@ class FirstRanks {
 };
 
 CheckpointSpec by_steps(std::int64_t every) {
-  return {every, 0.0, 100000};
+  return {every, 0.0, 1000};
 }
 
 /// With a skin that the fastest particles do not outrun.
