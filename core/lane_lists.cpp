@@ -174,11 +174,11 @@ std::int64_t Lane<Dim>::num_pairs() const {
 
 template <int Dim>
 std::size_t Lane<Dim>::bytes() const {
-  std::size_t total =
-      store_.bytes() + pairs_.bytes() + bonds_.bytes() + planes_.bytes() +
-      kept_.capacity() * sizeof(KeptContact) + loose_.capacity() * sizeof(LooseContact<Dim>) +
-      8 * row_begin_.capacity() + 4 * (cells_.start.capacity() + new_row_.capacity()) +
-      blocks_.capacity() * sizeof(Block) + walls_.bytes();
+  std::size_t total = store_.bytes() + pairs_.bytes() + bonds_.bytes() + planes_.bytes() +
+                      kept_.capacity() * sizeof(KeptContact) +
+                      loose_.capacity() * sizeof(LooseContact<Dim>) + 8 * row_begin_.capacity() +
+                      4 * (cells_.start.capacity() + new_row_.capacity()) +
+                      blocks_.capacity() * sizeof(Block) + walls_.bytes();
   for (const Band& band : bands_) total += band.across.bytes() + band.planes.bytes();
   return total;
 }

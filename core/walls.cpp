@@ -112,9 +112,9 @@ template <int Dim>
 void WallContacts<Dim>::foresee_wrap(const ParticleStore<Dim>& store, const Grid<Dim>& grid,
                                      std::span<const WallShape<Dim>> shapes, Rows rows) {
   if (!grid.box().any()) return;
-  const auto first = std::lower_bound(
-      list_.begin(), list_.end(), rows.begin,
-      [](const WallContact<Dim>& c, std::int32_t row) { return c.row < row; });
+  const auto first =
+      std::lower_bound(list_.begin(), list_.end(), rows.begin,
+                       [](const WallContact<Dim>& c, std::int32_t row) { return c.row < row; });
   for (auto at = first; at != list_.end() && at->row < rows.end; ++at) {
     WallContact<Dim>& c = *at;
     double wrapped[3] = {};

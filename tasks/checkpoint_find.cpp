@@ -85,7 +85,8 @@ std::optional<CheckpointChoice> find_checkpoint(const Communicator& communicator
   std::string reasons;
   for (const std::string& reason : choice.skipped) reasons += "\n  " + reason;
   throw InputError(SourcePlace{path, 0, 0}, "none of the checkpoints can be used:" + reasons,
-                   "to start the run from step 0, leave --restart out and give --force or another --out");
+                   "to start the run from step 0, leave --restart out and give --force or another "
+                   "--out");
 }
 
 }  // namespace barchan

@@ -51,7 +51,7 @@ class Simulation::Engine {
   std::int64_t num_particles_ = 0;
   int stage_ = 0;
   bool stopped_ = false;
-  bool is_over_ = false;  ///< the last stage is
+  bool is_over_ = false;        ///< the last stage is
   bool is_in_step_ = false;     ///< or one was not ended
   std::exception_ptr failure_;  ///< what run() threw
   std::string restored_from_;   ///< checkpoint; empty: a new run

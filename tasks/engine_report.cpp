@@ -167,12 +167,12 @@ template <int Dim>
 void Simulation::EngineOf<Dim>::report_departures(const std::vector<Departure>& left) {
   const Departure& first = left.front();
   throw AgreedError(
-      fmt::format("at step {} particle {} is out of the domain, at {} with velocity {}{}: "
-                  "domain.outside = \"delete\" lets particles go, from a checkpoint too; a larger "
-                  "domain or a wall there needs a run from the start",
-                  step_, first.id, in_brackets(first.position, Dim),
-                  in_brackets(first.velocity, Dim),
-                  left.size() == 1 ? "" : fmt::format(", and {} more are", left.size() - 1)),
+      fmt::format(
+          "at step {} particle {} is out of the domain, at {} with velocity {}{}: "
+          "domain.outside = \"delete\" takes particles out, also from a checkpoint on; for a "
+          "larger domain or a wall there, start the run from step 0",
+          step_, first.id, in_brackets(first.position, Dim), in_brackets(first.velocity, Dim),
+          left.size() == 1 ? "" : fmt::format(", and {} more are", left.size() - 1)),
       true);
 }
 

@@ -95,8 +95,8 @@ void Simulation::EngineOf<Dim>::judge(const CheckNumbers& answer) {
   if (is_harmless(answer)) return;
   if (!std::isfinite(answer.distance) || !std::isfinite(answer.speed)) {
     throw AgreedError(
-        fmt::format("at step {} the state is no longer finite: {}; start the run anew with a "
-                    "smaller time.step, more damping or less overlap",
+        fmt::format("at step {} the state is no longer finite: {}; start the run from step 0 with "
+                    "a smaller time.step, more damping or less overlap",
                     step_, describe_fastest()));
   }
   judge_balance(answer);
@@ -230,7 +230,8 @@ void Simulation::EngineOf<Dim>::judge_overlap(double share) {
   if (!is_error && (has_warned_ || share <= limits.overlap_warning)) return;
   const std::string what = fmt::format(
       "an overlap of {:.3g} of the smaller radius is beyond limits.{} = {:.3g}; {}; a higher "
-      "limit lets the run go on, from a checkpoint too; stiffer contacts need a run from the start",
+      "limit lets the run continue, also from a checkpoint on; for stiffer contacts, start the run "
+      "from step 0",
       share, is_error ? "overlap_error" : "overlap_warning",
       is_error ? limits.overlap_error : limits.overlap_warning, describe_worst_overlap());
   if (is_error) throw AgreedError(fmt::format("at step {} {}", step_, what), true);

@@ -16,8 +16,7 @@
 namespace barchan {
 namespace {
 
-constexpr const char* kStays =
-    "leave velocity and omega out, or fix the box of those that stay";
+constexpr const char* kStays = "leave velocity and omega out, or fix the box of those that stay";
 
 std::vector<Grain> make_ring(const RingSource& ring) {
   std::vector<Grain> grains;

@@ -54,7 +54,9 @@ std::string piece_name(std::int64_t step, int rank) {
   return fmt::format("step_{:09}_rank_{}.vtp", step, rank);
 }
 
-std::string whole_name(std::int64_t step) { return fmt::format("step_{:09}.pvtp", step); }
+std::string whole_name(std::int64_t step) {
+  return fmt::format("step_{:09}.pvtp", step);
+}
 
 }  // namespace
 

@@ -36,7 +36,7 @@ def failed_run(deck, *words, ranks=1, checkpoints=CHECKPOINTS):
 
 def check_departure(ranks):
     checkpoint = failed_run(edited(("[[wall]]", FLYING + "[[wall]]"), ("steps = 200", "steps = 2000")),
-                            'domain.outside = "delete" lets particles go, from a checkpoint too', ranks=ranks)
+                            'domain.outside = "delete" takes particles out, also from a checkpoint on', ranks=ranks)
     again = go_on(restart=checkpoint)
     expect(again.returncode == 1, f"the same rule, the same end: {again.returncode}, {again.stderr}")
     succeeds("delete", go_on("--set", "domain.outside=delete", restart=checkpoint, ranks=3 - ranks))
@@ -44,7 +44,7 @@ def check_departure(ranks):
 
 def check_overlap():
     checkpoint = failed_run(edited(("steps = 200", "steps = 2500")) + "\n[limits]\noverlap_warning = 0.04\noverlap_error = 0.05\n",
-                            "limits.overlap_error", "a higher limit lets the run go on, from a checkpoint too")
+                            "limits.overlap_error", "a higher limit lets the run continue, also from a checkpoint on")
     succeeds("a higher limit", go_on("--set", "limits.overlap_error=10", restart=checkpoint))
 
 

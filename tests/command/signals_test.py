@@ -35,6 +35,17 @@ def check_hang_up(ranks):
     expect(is_saved_at_the_end("signal.out"), f"SIGHUP, {ranks} ranks: not saved, {checkpoints_of('signal.out')}")
 
 
+def check_launcher_ended():
+    """mpirun that gets SIGTERM hands it on after its limit, and leaves ranks the same time once more to save."""
+    fresh("signal.out")
+    line = ["mpirun", "--mca", "odls_base_sigkill_timeout", "3", *command_line((*ARGUMENTS, *LONG), 2)[1:]]
+    process = subprocess.Popen(line, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    wait_for(lambda: has_rows("signal.out"), "rows")
+    process.send_signal(signal.SIGTERM)
+    ended(process)  # with a status that is mpirun's own
+    expect(is_saved_at_the_end("signal.out"), f"SIGTERM to mpirun: not saved, {checkpoints_of('signal.out')}")
+
+
 def check_nohup():
     """Who asked that hanging up be ignored is obeyed."""
     fresh("signal.out")
@@ -122,6 +133,7 @@ def is_of(path, launcher, ranks):
 for num_ranks in (1, 2):
     timed(check_hang_up, num_ranks)
     timed(check_closed_pipes, num_ranks)
+timed(check_launcher_ended)
 timed(check_nohup)
 timed(check_closed_streams)
 for name in ("shared", "put-flag"):
