@@ -48,6 +48,11 @@ double relative_speed(const Model& model, const ParticleSet& set) {
   return 2.0 * (start + wall) + std::sqrt(2.0 * depth);
 }
 
+/// Of the smaller radius; without a limit the centres meet.
+double largest_share(double overlap_limit) {
+  return std::isfinite(overlap_limit) ? overlap_limit : 2.0;
+}
+
 /// What a particle may have to bear at once: as many contacts as neighbours fit around it, each
 /// with half of the largest overlap; or one impact.
 double largest_sum(const ContactConstants& law, const Largest& a, const Largest& b, double speed,
@@ -56,8 +61,7 @@ double largest_sum(const ContactConstants& law, const Largest& a, const Largest&
   const double friction = std::sqrt(1.0 + law.mu * law.mu);
   const double mass = a.mass * b.mass / (a.mass + b.mass);
   const double damping = law.cn.constant + law.cn.rate * mass + law.cn.critical * std::sqrt(mass);
-  const double most = model.limits.overlap_error;
-  const double overlap = (std::isfinite(most) ? most : 2.0) * std::min(a.radius, b.radius);
+  const double overlap = largest_share(model.limits.overlap_error) * std::min(a.radius, b.radius);
   // |nx| + |ny| (+ |nz|) of a normal: 4/pi and 3/2 in the mean, sqrt(2) and sqrt(3) at most.
   const double squeezed = (is_flat ? 3.0 * 4.0 / std::numbers::pi : 6.0 * 1.5) * law.kn * overlap;
   const double hit = (is_flat ? std::numbers::sqrt2 : std::numbers::sqrt3) *
@@ -86,6 +90,14 @@ ForceGrain force_grain(const Model& model, const ParticleSet& particles) {
   (void)std::frexp(most / ForceGrain{}.most(), &exponent);
   grain.size = std::ldexp(1.0, std::clamp(exponent, -1000, 900));
   return grain;
+}
+
+ForceGrain grain_for_limit(const ForceGrain& grain, double limit_before, double limit_now) {
+  const double ratio = largest_share(limit_now) / largest_share(limit_before);
+  if (!(ratio > 1.0)) return grain;
+  int exponent = 0;
+  (void)std::frexp(ratio, &exponent);
+  return {std::ldexp(grain.size, exponent)};
 }
 
 double smallest_mass(const Model& model, const ParticleSet& particles) {

@@ -34,6 +34,11 @@ struct ForceGrain {
 /// Pure; the same on every rank. @param particles  of the start
 [[nodiscard]] ForceGrain force_grain(const Model& model, const ParticleSet& particles);
 
+/// The grain of a run that continues with another limits.overlap_error: coarser by as much as the
+/// limit is higher, and otherwise the same. Pure.
+[[nodiscard]] ForceGrain grain_for_limit(const ForceGrain& grain, double limit_before,
+                                         double limit_now);
+
 /// Mass of the lightest particle that moves [kg]; infinite without any.
 [[nodiscard]] double smallest_mass(const Model& model, const ParticleSet& particles);
 

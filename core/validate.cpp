@@ -81,7 +81,7 @@ void check_contacts(const Model& model) {
     for (std::size_t b = 0; b < n; ++b) {
       const ContactConstants& c = table.constants[a * n + b];
       const ContactConstants& mirror = table.constants[b * n + a];
-      positive(key + "normal_stiffness", c.kn);
+      not_negative(key + "normal_stiffness", c.kn);
       not_negative(key + "tangential_stiffness", c.kt);
       not_negative(key + "friction", c.mu);
       check_dashpot(key + "normal_damping", c.cn);

@@ -78,7 +78,7 @@ class WallContacts {
   /// Lists rows within `skin` of an active wall, ordered by row, wall, image. A fixed particle
   /// touches loaded plates only: there alone its force is of use.
   void search(const ParticleStore<Dim>& store, const WallView<Dim>& walls, double skin);
-  /// Before positions of these rows are wrapped into the box: images as they will be seen from there.
+  /// Before positions of these rows are wrapped into the box: images as seen from there.
   void foresee_wrap(const ParticleStore<Dim>& store, const Grid<Dim>& grid,
                     std::span<const WallShape<Dim>> shapes, Rows rows);
 

@@ -78,6 +78,7 @@ CheckpointState Simulation::EngineOf<Dim>::state() {
   s.has_bonds = scale_.has_bonds;
   s.num_particles = num_particles_;
   s.grain = scale_.grain.size;
+  s.overlap_limit = model_.limits.overlap_error;
   s.look_step = look.step;
   s.look_outside = look.outside;
   s.look_overlap = look.overlap;
@@ -98,7 +99,8 @@ Simulation::EngineOf<Dim>::EngineOf(const Model& model, const std::string& check
   const CheckpointState& s = open.state;
   restored_from_ = open.path;
   const double skin = model_.search.skin.value_or(s.skin);
-  make_world({skin, s.reach - s.skin + skin, s.start_particles, s.has_bonds, {s.grain}});
+  make_world({skin, s.reach - s.skin + skin, s.start_particles, s.has_bonds,
+              grain_for_limit({s.grain}, s.overlap_limit, model_.limits.overlap_error)});
   make_strip();
   for (std::size_t w = 0; w < s.walls.size(); ++w) {
     world_.walls[w].is_active = s.walls[w].is_active != 0.0;

@@ -207,8 +207,8 @@ void add_bonds(const Model& model, const ParticleSet& set, Limits& limits) {
   }
 }
 
-/// A plate moves against all that touches it, each particle against the plate. With n equal contacts
-/// the fastest of their motions is that of a mass 1/(n/M + 1/m) on one contact's spring.
+/// A plate moves against all that touches it, each particle against the plate. With n equal
+/// contacts the fastest of their motions is that of a mass 1/(n/M + 1/m) on one contact's spring.
 void add_plate(const Model& model, const WallSpec& plate, double num_touching, std::size_t material,
                double inverse_mass, Limits& limits) {
   const ContactConstants& law = model.contacts.at(static_cast<int>(material), plate.material);

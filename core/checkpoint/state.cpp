@@ -28,6 +28,7 @@ CheckpointState take_state(ByteReader& in) {
   s.skin = in.take<double>();
   s.reach = in.take<double>();
   s.grain = in.take<double>();
+  s.overlap_limit = in.take<double>();
   s.start_particles = in.take<std::int64_t>();
   s.has_bonds = in.take<std::uint8_t>() != 0;
   s.num_particles = in.take<std::int64_t>();
@@ -101,6 +102,7 @@ std::vector<std::byte> encode(const CheckpointState& s) {
   out.put(s.skin);
   out.put(s.reach);
   out.put(s.grain);
+  out.put(s.overlap_limit);
   out.put(s.start_particles);
   out.put(static_cast<std::uint8_t>(s.has_bonds));
   out.put(s.num_particles);
@@ -124,12 +126,12 @@ CheckpointState decode_state(std::span<const std::byte> bytes, const std::string
     refuse(file, std::string("the state is not valid: ") + e.what(), "take another checkpoint");
   }
   const auto positive = [](double v) { return std::isfinite(v) && v > 0.0; };
-  const bool is_sane = state.step >= 0 && state.stage >= 0 && state.stage_begin >= 0 &&
-                       state.stage_begin <= state.step && state.skin >= 0.0 &&
-                       std::isfinite(state.skin) && positive(state.reach) &&
-                       state.start_particles >= 0 && positive(state.grain) &&
-                       state.look_step >= -1 && state.look_step <= state.step &&
-                       (state.look_step < 0 || state.step - state.look_step < 16);
+  const bool is_sane =
+      state.step >= 0 && state.stage >= 0 && state.stage_begin >= 0 &&
+      state.stage_begin <= state.step && state.skin >= 0.0 && std::isfinite(state.skin) &&
+      positive(state.reach) && state.start_particles >= 0 && positive(state.grain) &&
+      state.overlap_limit > 0.0 && state.look_step >= -1 && state.look_step <= state.step &&
+      (state.look_step < 0 || state.step - state.look_step < 16);
   if (!is_sane) refuse(file, "the state is not valid", "take another checkpoint");
   return state;
 }

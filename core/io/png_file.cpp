@@ -40,7 +40,8 @@ std::string four_bytes(std::uint32_t number) {
   return bytes;
 }
 
-/// The standard keyword for the program that wrote a picture: | length | tEXt Software 0 name | CRC |
+/// The standard keyword for the program that wrote a picture:
+/// | length | tEXt Software 0 name | CRC |
 std::string software_chunk() {
   constexpr std::string_view text("tEXtSoftware\0barchan", 20);
   const auto* bytes = reinterpret_cast<const Bytef*>(text.data());

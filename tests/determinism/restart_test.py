@@ -25,7 +25,7 @@ from work_folder import SOURCE, leave_tree  # noqa: E402
 
 STEPS, EVERY = 3000, 200
 # The plate comes down early, so that all that a checkpoint holds is there when ranks are killed.
-OPTIONS = ["--set", "stage.settle.max_time=0.1", "--set", "output.picture=false",
+OPTIONS = ["--set", "stage.settle.max_time=0.1", "--set", "wall.plate.point=[8.0, 3.05]", "--set", "output.picture=false",
            "--set", "output.series_every=100", "--set", "output.snapshots_every=1000",
            "--set", f"checkpoint.every_steps={EVERY}", "--quiet"]
 failures = []

@@ -93,9 +93,9 @@ TEST(Plate, BouncesOnADiskWithTheSameAmplitudeForEver) {
   for (const double share : {0.04, 0.2}) {
     expect_constant_amplitude(piston_deck(200.0, 0.002), share);
     expect_constant_amplitude(piston_deck(2.0, 0.002), share);  // lighter than the disk
-    // It comes off the disk, and back.
-    expect_constant_amplitude(piston_deck(200.0, -0.05, "fixed = true"), share);
   }
+  // It comes off the disk, and back.
+  expect_constant_amplitude(piston_deck(200.0, -0.05, "fixed = true"), 0.04);
 }
 
 TEST(Plate, BouncesOnAFixedDiskAsAWeightOnASpringDoes) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 namespace barchan {
 namespace {
@@ -107,6 +108,15 @@ TEST(ForceGrain, HoldsForDecksInWhichNothingCanPress) {
   EXPECT_GT(force_grain(model, disks(0.05)).size, 0.0);
   EXPECT_GT(force_grain(model, {}).size, 0.0);
   EXPECT_EQ(coarse_grain_warning(force_grain(model, {}), model, {}), "");
+}
+
+TEST(ForceGrain, GrowsWithTheLimitOfARunThatContinues) {
+  const ForceGrain grain{0x1p-40};
+
+  EXPECT_EQ(grain_for_limit(grain, 0.5, 0.5).size, 0x1p-40);
+  EXPECT_EQ(grain_for_limit(grain, 0.5, 0.1).size, 0x1p-40);
+  EXPECT_GE(grain_for_limit(grain, 0.05, 10.0).size, 200 * 0x1p-40);
+  EXPECT_GE(grain_for_limit(grain, 0.5, std::numeric_limits<double>::infinity()).size, 4 * 0x1p-40);
 }
 
 TEST(ForceGrain, IsToldAndWarnedOfAgainstTheSmallestWeight) {
