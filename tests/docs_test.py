@@ -13,7 +13,7 @@ FOLDERS = LAYERS + ("bench", "cmake", "docs", "examples", "tests")
 NAMED_FILE = re.compile(r"(?<![\w/.<*-])((?:[\w.-]+/)*[\w-]+\.(?:hpp|cpp|md|py|sh|cmake|supp))\b")
 OF_OTHERS = {"--mca", "--bind-to", "--cpu-bind", "--mpi", "--oversubscribe", "--launcher", "--version", "--help",
              "--gtest_filter", "--gtest_repeat", "--preset", "--build", "--install", "--prefix", "--allow-run-as-root"}
-WORDS_OF_OTHERS = {"tc", "mpi_yield_when_idle", "MPI_ERR_WIN", "ring1_diameter_x", "ring1_diameter_y"}
+WORDS_OF_OTHERS = {"tc", "odls_base_sigkill_timeout", "mpi_yield_when_idle", "MPI_ERR_WIN", "ring1_diameter_x", "ring1_diameter_y"}
 IDIOMS = re.compile(r"\b(is told|are told|to be had|so many|goes on without|the like of|as it stands)\b")
 faults = []
 
