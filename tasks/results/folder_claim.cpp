@@ -11,8 +11,8 @@ namespace fs = std::filesystem;
 namespace barchan {
 
 FolderClaim::FolderClaim(const RunFolder& folder, bool may_exist) {
-  // Whoever holds the folder changes it, so where there is a lock, nothing is looked at before it is
-  // ours. Without one nobody holds a folder that is refused anyway.
+  // Whoever holds the folder changes it, so where there is a lock, nothing is looked at before it
+  // is ours. Without one nobody holds a folder that is refused anyway.
   std::error_code ignored;
   if (!fs::exists(folder.file(kLockName), ignored)) folder.check(may_exist);
   try {
