@@ -99,6 +99,7 @@ void print_walls(const Model& model) {
 
 void print_strips(const LoadedDeck& loaded, int wanted) {
   const StripPlan plan = plan_strips(loaded.deck.model, loaded.particles);
+  check_ranks(wanted, loaded.deck.model, static_cast<int>(plan.slab_counts.size()));
   const auto num_particles = static_cast<double>(loaded.particles.particles.size());
   const double bytes =
       static_cast<double>(memory_estimate(loaded.deck.model, loaded.particles)) / num_particles;

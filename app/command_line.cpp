@@ -1,5 +1,7 @@
 #include <barchan/app/command_line.hpp>
 
+#include <charconv>
+#include <cmath>
 #include <memory>
 #include <sstream>
 
@@ -48,6 +50,22 @@ CLI::Validator not_empty() {
       [](std::string& word) -> std::string { return word.empty() ? "is empty" : ""; }, "");
 }
 
+/// Turns 1e3 into 1000, and refuses what is no whole number in these words.
+CLI::Validator whole_number() {
+  return CLI::Validator(
+      [](std::string& word) -> std::string {
+        double value = 0.0;
+        const char* end = word.data() + word.size();
+        const auto read = std::from_chars(word.data(), end, value);
+        if (read.ec != std::errc() || read.ptr != end || value != std::floor(value))
+          return "'" + word + "' is not a whole number";
+        if (std::abs(value) > 0x1p53) return word + " is too large";
+        word = fmt::format("{:.0f}", value);
+        return {};
+      },
+      "");
+}
+
 /// `replay` records a run first, so that it is no exchange of its own.
 std::vector<std::string> with_replay(std::vector<std::string> names) {
   names.emplace_back("replay");
@@ -78,6 +96,7 @@ void add_run(CLI::App& root, RunArguments& run, Words& words) {
       ->check(not_empty());
   command.add_option("--steps", run.steps, "Number of steps, instead of the deck's")
       ->type_name("N")
+      ->transform(whole_number())
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{1} << 53));
   command
       .add_option(
@@ -91,6 +110,7 @@ void add_run(CLI::App& root, RunArguments& run, Words& words) {
       .add_option("--threads", run.options.threads,
                   "Threads per rank; default: the node's cores over its ranks")
       ->type_name("T")
+      ->transform(whole_number())
       ->check(CLI::Range(1, 1024));
   command
       .add_option("--exchange", run.options.exchange,
@@ -139,6 +159,7 @@ void add_probe(CLI::App& root, ProbeArguments& probe) {
   command.add_option("--bytes", probe.options.sizes, "Sizes of messages; default: 64 B to 1 MiB")
       ->type_name("N")
       ->delimiter(',')
+      ->transform(whole_number())
       ->check(CLI::Range(std::size_t{1}, std::size_t{1} << 48));
   command
       .add_option("--seconds", probe.options.budget_seconds,
@@ -154,6 +175,7 @@ void add_others(CLI::App& root, CommandLine& line) {
   check.add_option("deck", line.check.deck, "The deck, a TOML file")->required()->type_name("DECK");
   check.add_option("--ranks", line.check.ranks, "Show the strips for this number of ranks")
       ->type_name("P")
+      ->transform(whole_number())
       ->check(CLI::Range(1, 1 << 20));
   add_settings(check, line.check.settings);
 
@@ -177,6 +199,7 @@ void add_others(CLI::App& root, CommandLine& line) {
       .add_option("--dimension", line.convert.dimension,
                   "2 or 3; default: 2 where all particles lie in the plane z = 0")
       ->type_name("D")
+      ->transform(whole_number())
       ->check(CLI::IsMember({2, 3}));
   convert
       .add_option("--data-density", line.convert.density,

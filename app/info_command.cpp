@@ -89,7 +89,8 @@ void show_particles(const std::string& path) {
   rows.push_back({"particles", grouped(static_cast<std::int64_t>(file.particles.size()))});
   rows.push_back({"types", std::to_string(types)});
   rows.push_back({"radius", range(r_lo, r_hi) + " m"});
-  for (int c = 0; c < 3; ++c)
+  const bool is_flat = lo.z() == 0.0 && hi.z() == 0.0;
+  for (int c = 0; c < (is_flat ? 2 : 3); ++c)
     rows.push_back({std::string(1, "xyz"[c]), range(lo[c], hi[c]) + " m"});
   rows.push_back({"speed", fmt::format("at most {:.4g} m/s", speed)});
   if (file.has_bonds)

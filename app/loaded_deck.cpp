@@ -11,7 +11,9 @@ LoadedDeck load_deck(const std::string& path, const std::vector<std::string>& se
   LoadedDeck loaded;
   loaded.deck = read_deck(path, overrides);
   loaded.particles = make_particles(loaded.deck.model, loaded.deck.sources, loaded.begins);
-  check_particles(loaded.deck.model, loaded.particles);
+  check_particles(loaded.deck.model, loaded.particles, [&](std::size_t index) {
+    return place_of_particle(loaded.deck.sources, loaded.begins, index);
+  });
   check_walls(loaded.deck.model, loaded.particles);
   loaded.deck.model.sources = make_records(loaded.deck.sources, loaded.particles, loaded.begins);
   return loaded;

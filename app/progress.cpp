@@ -7,10 +7,12 @@
 #include <cstdio>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include <barchan/app/readable.hpp>
+#include <barchan/app/terminal.hpp>
 
 namespace barchan::app {
 namespace {
@@ -56,15 +58,16 @@ void Progress::print(double now) {
   const double rate = loop > 0.0 ? static_cast<double>(step - last_step_) / loop : 0.0;
   const double left = static_cast<double>(end - step) * now /
                       static_cast<double>(std::max<std::int64_t>(1, t.steps));
-  std::string line = fmt::format(
-      "step {} of {} ({}), {} particle-steps/s, {} left", grouped(step), grouped(end),
-      percent(static_cast<double>(step) / static_cast<double>(end)),
-      readable_rate(rate * static_cast<double>(simulation_.num_particles())), readable_time(left));
+  std::vector<std::string> parts{
+      fmt::format("step {} of {} ({})", grouped(step), grouped(end),
+                  percent(static_cast<double>(step) / static_cast<double>(end))),
+      readable_time(left) + " left",
+      readable_rate(rate * static_cast<double>(simulation_.num_particles())) + " particle-steps/s"};
   if (t.in_flight_seconds > 0.0) {
-    line +=
-        fmt::format(", {} of communication hidden",
-                    percent(std::clamp(1.0 - t.exposed_seconds / t.in_flight_seconds, 0.0, 1.0)));
+    const double hidden = std::clamp(1.0 - t.exposed_seconds / t.in_flight_seconds, 0.0, 1.0);
+    parts.push_back(percent(hidden) + " of communication hidden");
   }
+  const std::string line = joined_within(parts, columns_of(STDERR_FILENO) - 1);
   std::fprintf(stderr, is_terminal_ ? "\r\033[K%s" : "%s\n", line.c_str());
   std::fflush(stderr);
   has_line_ = is_terminal_;

@@ -9,13 +9,6 @@
 namespace barchan::app {
 namespace {
 
-/// Letters, not bytes.
-std::size_t width_of(const std::string& text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
-  }));
-}
-
 std::string scaled(double number, double base, const std::vector<const char*>& units) {
   std::size_t unit = 0;
   while (std::fabs(number) >= 0.9995 * base && unit + 1 < units.size()) {
@@ -29,6 +22,12 @@ std::string scaled(double number, double base, const std::vector<const char*>& u
 }
 
 }  // namespace
+
+std::size_t width_of(const std::string& text) {
+  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
+  }));
+}
 
 std::string grouped(std::int64_t number) {
   const std::string digits = std::to_string(number < 0 ? -number : number);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -15,6 +16,8 @@ namespace barchan::app {
 [[nodiscard]] std::string readable_seconds(double seconds);  ///< "12.3 s", "4.56 ms"
 [[nodiscard]] std::string percent(double share);             ///< "12 %"
 [[nodiscard]] std::string range(double lo, double hi);       ///< "0.04 … 0.06", or one number
+
+[[nodiscard]] std::size_t width_of(const std::string& text);  ///< letters, not bytes
 
 /// Rows of words, column by column: the first `num_left` columns flush left, the others flush
 /// right.

@@ -1,14 +1,19 @@
 #include <barchan/app/summary_table.hpp>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdio>
 
 #include <fmt/format.h>
 
 #include <barchan/app/readable.hpp>
+#include <barchan/app/terminal.hpp>
 
 namespace barchan::app {
 namespace {
+
+constexpr double kLeastShare = 0.0005;  // of a phase worth a word; run.json has all
 
 using Rows = std::vector<std::vector<std::string>>;
 
@@ -22,7 +27,8 @@ std::string phases_of(const RunSummary& s) {
   std::sort(phases.rbegin(), phases.rend());
   std::string text;
   for (const auto& [seconds, name] : phases) {
-    if (sum > 0.0) text += (text.empty() ? "" : ", ") + name + " " + percent(seconds / sum);
+    if (seconds > kLeastShare * sum)
+      text += (text.empty() ? "" : ", ") + name + " " + percent(seconds / sum);
   }
   return text;
 }
@@ -90,7 +96,7 @@ void print_summary(const RunSummary& s, const RunFolder& folder, const Model& mo
     std::printf("Interrupted at step %s of %s; the results are those of that step.\n",
                 grouped(s.steps).c_str(), grouped(model.time.num_steps).c_str());
   }
-  std::fputs(table(rows, 2).c_str(), stdout);
+  std::fputs(table(wrapped_within(rows, columns_of(STDOUT_FILENO)), 2).c_str(), stdout);
   std::fflush(stdout);
 }
 

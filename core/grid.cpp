@@ -1,6 +1,6 @@
 #include <barchan/core/grid.hpp>
 
-#include <string>
+#include <fmt/format.h>
 
 #include <barchan/core/error.hpp>
 
@@ -35,9 +35,12 @@ Grid<Dim>::Grid(const Domain& domain, double cutoff, std::int64_t num_particles)
     total *= cells(k);
     if (!is_periodic(k)) continue;
     if (length < 2.0 * cutoff) {
-      throw InputError("the periodic domain is " + std::to_string(length) +
-                           " m long, shorter than twice the reach of a contact",
-                       "make it at least " + std::to_string(2.0 * cutoff) + " m");
+      throw InputError(
+          domain.place,
+          fmt::format("the domain is periodic and {:.6g} m long along {}, shorter than "
+                      "twice the reach of a contact",
+                      length, "xyz"[a]),
+          fmt::format("make it at least {:.6g} m", 2.0 * cutoff));
     }
   }
   const double most = 8.0 * static_cast<double>(num_particles) + 4096.0;

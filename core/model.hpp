@@ -26,6 +26,7 @@ struct Domain {
   std::array<bool, 3> periodic{};
   int strip_axis = 0;  ///< axis along which ranks cut strips
   OutsidePolicy outside = OutsidePolicy::Error;
+  SourcePlace place{};  ///< in the deck, if it comes from one
 };
 
 /// One dashpot: coefficient = constant + rate·m_eff + critical·sqrt(m_eff).
@@ -115,6 +116,7 @@ struct TimeSpec {
   double step = 0.0;           ///< dt [s]
   std::int64_t num_steps = 0;  ///< of the whole run
   bool allow_unstable = false;
+  SourcePlace place{};  ///< of the step in the deck, if it comes from one
 };
 
 enum class ContactSearchKind { Cells, AllPairs };

@@ -94,6 +94,7 @@ struct RingSource {
 /// source's; ids are zero.
 struct ListSource {
   std::vector<ParticleData> particles;
+  std::vector<SourcePlace> places{};  ///< of each in the deck; empty: not from one
 };
 
 /// Which particles ParticleSource::bond links: those that touch, unless one of these is given.

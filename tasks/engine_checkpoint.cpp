@@ -61,6 +61,7 @@ void Simulation::EngineOf<Dim>::save_checkpoint() {
   copy.state.clear();
   if (communicator_.is_root()) copy.state = encode(state());
   keeper_->start();
+  if (!is_in_step_) return;  // outside of the loop
   checkpoint_seconds_ +=
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }

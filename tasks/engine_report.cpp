@@ -6,6 +6,7 @@
 #include <fmt/ranges.h>
 
 #include <barchan/core/error.hpp>
+#include <barchan/core/vec_text.hpp>
 #include <barchan/tasks/engine.hpp>
 
 // What a run says that goes wrong or must let particles go: with id, position, velocity and
@@ -15,10 +16,6 @@ namespace barchan {
 namespace {
 
 constexpr std::size_t kMostPartners = 6;  // that a message names
-
-std::string in_brackets(const double* v, int count) {
-  return fmt::format("({:.6g})", fmt::join(v, v + count, ", "));
-}
 
 std::string plural(std::int64_t count, const char* word) {
   return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");

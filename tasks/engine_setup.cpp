@@ -1,8 +1,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <fmt/format.h>
-
 #include <barchan/comm/strips.hpp>
 #include <barchan/core/error.hpp>
 #include <barchan/core/generators/check_walls.hpp>
@@ -67,15 +65,7 @@ template <int Dim>
 void Simulation::EngineOf<Dim>::make_strip() {
   if (options_.threads <= 0) options_.threads = default_threads(communicator_);
   const int fit = max_strips(world_.grid.num_slabs(), kMinSlabs);
-  if (communicator_.size() > std::max(1, fit)) {
-    throw InputError(fmt::format("{} ranks for a domain that is {} cells of {:.3g} m long",
-                                 communicator_.size(), world_.grid.num_slabs(),
-                                 (model_.domain.hi - model_.domain.lo)[world_.grid.axis(0)] /
-                                     world_.grid.num_slabs()),
-                     fmt::format("at most {} strips of {} cells fit: use at most {} ranks, or cut "
-                                 "along a longer axis by domain.strip_axis",
-                                 std::max(1, fit), kMinSlabs, std::max(1, fit)));
-  }
+  check_ranks(communicator_.size(), model_, world_.grid.num_slabs());
   const int lanes = std::clamp(options_.threads, 1, std::max(1, fit / communicator_.size()));
   auto exchange = first_exchange(
       options_, communicator_,

@@ -162,7 +162,11 @@ Timings Simulation::EngineOf<Dim>::timings() const {
   if (checkpoint_seconds_ > 0.0) t.phases["checkpoint"] = checkpoint_seconds_;
   double rest = loop_seconds_;
   for (const auto& [name, seconds] : t.phases) rest -= seconds;
-  t.phases["other"] = std::max(0.0, rest);
+  // Within steps: tasks that start, and workers that wait for each other.
+  const double tasks =
+      steps.run - steps.chunks - steps.bands - steps.send - steps.poll - steps.wait;
+  t.phases["tasks"] = std::clamp(tasks, 0.0, std::max(0.0, rest));
+  t.phases["between_steps"] = std::max(0.0, rest - t.phases["tasks"]);
   if (strip_->exchange() != nullptr) t.exchange = strip_->exchange()->stats();
   t.communication = {{"halo", {steps.in_flight, steps.exposed(), steps.late}},
                      {"rebuild", {waits.in_flight + waits.halo, waits.sum(), waits.late}},

@@ -42,7 +42,7 @@ struct CommunicationTime {
 struct Timings {
   double loop_seconds = 0.0;             ///< inside run()
   std::int64_t steps = 0;                ///< of this loop, without those before a restart
-  std::map<std::string, double> phases;  ///< name → seconds; the rest of the loop is "other"
+  std::map<std::string, double> phases;  ///< name → seconds; they sum up to loop_seconds
   std::map<std::string, CommunicationTime> communication;  ///< "halo", "rebuild", "reductions"
   double in_flight_seconds = 0.0;                          ///< all kinds
   double exposed_seconds = 0.0;

@@ -259,7 +259,7 @@ std::vector<StepLimit> step_limits(const Model& model, const ParticleSet& partic
 void check_time_step(const Model& model, std::span<const StepLimit> limits) {
   if (limits.empty() || model.time.allow_unstable || model.time.step <= limits.front().step) return;
   throw InputError(
-      SourcePlace{model.deck_file, 0, 0},
+      model.time.place,
       fmt::format("time.step = {:g} s is unstable: the limit is {:.3g} s ({})", model.time.step,
                   limits.front().step, limits.front().what),
       fmt::format("use at most {:.3g} s, better {:.2g} s, or set time.allow_unstable = true",

@@ -75,6 +75,7 @@ void StepGraph<Dim>::build() {
 
 template <int Dim>
 void StepGraph<Dim>::run(const StepFrame& frame, int num_steps) {
+  const std::int64_t begin = now_ns();
   frame_ = frame;
   num_steps_ = num_steps;
   arena_.execute([this] {
@@ -103,6 +104,7 @@ void StepGraph<Dim>::run(const StepFrame& frame, int num_steps) {
     tell_acquire(graph_.get());
   });
   end_step();
+  run_ns_ += now_ns() - begin;
 }
 
 template <int Dim>
@@ -150,6 +152,7 @@ StepTimes StepGraph<Dim>::times() const {
   times.poll = share * static_cast<double>(poll_ns_);
   times.wait = share * static_cast<double>(wait_ns_);
   times.late = share * static_cast<double>(late_ns_);
+  times.run = kSecond * static_cast<double>(run_ns_);
   times.in_flight = kSecond * static_cast<double>(flight_ns_);
   return times;
 }

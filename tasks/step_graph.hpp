@@ -31,6 +31,7 @@ struct StepTimes {
   double poll = 0.0;       ///< inside the exchange, polling between chunks
   double wait = 0.0;       ///< idle, waiting for a halo
   double late = 0.0;       ///< of wait: until a neighbour on this node had sent
+  double run = 0.0;        ///< in StepGraph::run
   double in_flight = 0.0;  ///< from sending the halo until the neighbours' halo was noticed
 
   /// The time that communication adds to the step.
@@ -133,6 +134,7 @@ class StepGraph {
   // In nanoseconds. Under comm_mutex_: send, poll, flights; wait is written by one task at a time.
   std::int64_t send_ns_ = 0, poll_ns_ = 0, wait_ns_ = 0, flight_ns_ = 0;
   std::int64_t late_ns_ = 0;
+  std::int64_t run_ns_ = 0;               ///< in run()
   std::atomic<std::int64_t> busy_ns_{0};  ///< in bands; a wait counts those idle only
   std::int64_t drain_begin_ = 0;
   std::int64_t posted_at_ = 0;  ///< the last that came while the drain waited, by its sender

@@ -4,7 +4,10 @@
 #include <numeric>
 #include <unordered_map>
 
+#include <fmt/format.h>
+
 #include <barchan/comm/strips.hpp>
+#include <barchan/core/error.hpp>
 #include <barchan/core/generators/close_pairs.hpp>
 #include <barchan/core/grid.hpp>
 #include <barchan/tasks/stability.hpp>
@@ -70,6 +73,19 @@ std::vector<std::int64_t> StripPlan::strip_counts(int num_strips) const {
 
 StripPlan plan_strips(const Model& model, const ParticleSet& particles) {
   return model.dimension == 2 ? plan_for<2>(model, particles) : plan_for<3>(model, particles);
+}
+
+void check_ranks(int num_ranks, const Model& model, int num_slabs) {
+  const int fit = max_strips(num_slabs, kMinSlabs);
+  if (num_ranks <= fit) return;
+  const int axis = model.domain.strip_axis;
+  const double width = (model.domain.hi - model.domain.lo)[axis] / num_slabs;
+  throw InputError(model.domain.place,
+                   fmt::format("{} ranks for a domain that is {} cells of {:.3g} m long along {}",
+                               num_ranks, num_slabs, width, "xyz"[axis]),
+                   fmt::format("at most {} strips of {} cells fit: use at most {} ranks, or cut "
+                               "along a longer axis by domain.strip_axis",
+                               fit, kMinSlabs, fit));
 }
 
 }  // namespace barchan

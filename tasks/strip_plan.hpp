@@ -29,4 +29,8 @@ struct StripPlan {
 /// than two reaches.
 [[nodiscard]] StripPlan plan_strips(const Model& model, const ParticleSet& particles);
 
+/// Errors: InputError, at the deck's domain, for more ranks than strips fit into so many cells
+/// along the strip axis.
+void check_ranks(int num_ranks, const Model& model, int num_slabs);
+
 }  // namespace barchan

@@ -166,9 +166,11 @@ Node parse_toml(std::string_view text, const std::string& file_name) {
     return convert(table, std::make_shared<const std::string>(file_name));
   } catch (const toml::parse_error& error) {
     const toml::source_position at = error.source().begin;
+    const bool is_number = error.description().find("64 bits") != std::string_view::npos;
     throw InputError(
         {file_name, static_cast<std::int64_t>(at.line), static_cast<std::int64_t>(at.column)},
-        fmt::format("this is not TOML: {}", error.description()), remedy);
+        fmt::format("this is not TOML: {}", error.description()),
+        is_number ? "whole numbers go up to 9223372036854775807" : remedy);
   } catch (const BrokenPromise&) {
     throw InputError({file_name, first_broken_line(text), 0}, "this is not TOML", remedy);
   }

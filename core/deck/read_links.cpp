@@ -9,11 +9,10 @@ namespace barchan::deck {
 namespace {
 
 std::pair<std::int64_t, std::int64_t> read_pair(const Node& node) {
-  const bool is_pair = node.kind == Node::Kind::Array && node.items.size() == 2 &&
-                       node.items[0].kind == Node::Kind::Integer &&
-                       node.items[1].kind == Node::Kind::Integer;
+  const bool is_pair = node.kind == Node::Kind::Array && node.items.size() == 2;
   if (!is_pair) fail_type(node, "a pair", "two ids", "write [1, 2]");
-  const std::int64_t a = node.items[0].integer, b = node.items[1].integer;
+  const std::int64_t a = whole_number(node.items[0], "an id");
+  const std::int64_t b = whole_number(node.items[1], "an id");
   if (a < 1 || b < 1 || a == b)
     throw InputError(node.place(), fmt::format("[{}, {}] is no pair of particles", a, b),
                      "ids count from 1, and the two differ");

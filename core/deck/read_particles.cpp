@@ -106,6 +106,7 @@ ListSource read_list(const TableReader& table, const ParticleSource& source,
   for (const Node* node : nodes) {
     list.particles.push_back(
         read_particle(TableReader(*node, table.dimension(), "particle"), defaults, draft));
+    list.places.push_back(node->place());
   }
   return list;
 }

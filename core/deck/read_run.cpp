@@ -49,6 +49,7 @@ Domain read_domain(const TableReader& root) {
   const TableReader table(*root.table("domain"), root.dimension(), "[domain]");
   const Box box = read_corners(table, "the domain");
   Domain domain;
+  domain.place = table.place();
   domain.lo = box.lo;
   domain.hi = box.hi;
   for (const std::string& name : table.names("periodic")) {
@@ -80,6 +81,7 @@ TimeSpec read_time(const TableReader& root) {
   const TableReader table(*root.table("time"), root.dimension(), "[time]");
   TimeSpec time;
   time.step = table.number("step");
+  time.place = table.place("step");
   time.allow_unstable = table.boolean("allow_unstable");
   if (!table.has_one_of("end", "steps")) {
     table.fail("", "[time] does not say when the run ends",

@@ -10,20 +10,23 @@ namespace barchan::deck {
 
 namespace {
 
+constexpr const char* kRemedy =
+    "write one radius, [min, max], or [{ radius = ..., weight = ... }, ...]";
+
 double read_radius(const Node& node) {
   static const KeySpec& spec = *find_key("hole", "radius");  // a number > 0 in m
   return checked_number(node, spec);
 }
 
 RadiusClass read_class(const Node& node, int dimension) {
+  if (node.kind == Node::Kind::Table && !node.find("radius"))
+    throw InputError(node.place(), "radius: a size class without a radius", kRemedy);
   const TableReader table(node, dimension, "size class");
   const double radius = table.number("radius");
   return {radius, radius, table.number("weight")};
 }
 
 RadiusClass read_range(const Node& node) {
-  constexpr const char* kRemedy =
-      "write one radius, [min, max], or [{ radius = ..., weight = ... }, ...]";
   if (node.items.size() != 2) {
     throw InputError(node.place(), fmt::format("radius: an array of {} numbers", node.items.size()),
                      kRemedy);
@@ -41,6 +44,8 @@ RadiusClass read_range(const Node& node) {
 
 SizeDistribution read_sizes(const TableReader& table) {
   const Node& node = *table.value("radius");
+  if (node.kind == Node::Kind::Table || node.kind == Node::Kind::String)
+    fail_type(node, "radius", "a number or an array", kRemedy);
   if (node.kind != Node::Kind::Array) {
     const double radius = read_radius(node);
     return {{{radius, radius, 1.0}}};

@@ -1,11 +1,14 @@
 #include <barchan/core/deck/table_reader.hpp>
 
+#include <algorithm>
 #include <charconv>
+#include <span>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include <barchan/core/deck/nearest.hpp>
+#include <barchan/core/deck/not_modelled.hpp>
 #include <barchan/core/deck/values.hpp>
 
 namespace barchan::deck {
@@ -21,6 +24,12 @@ Number parse_default(const KeySpec& spec) {
         fmt::format("schema: {} {} has no default to read", spec.table, spec.key));
   }
   return value;
+}
+
+/// Two letters off in a long word are a slip; more are another word.
+bool is_misspelt(std::string_view word, std::span<const std::string_view> known) {
+  const std::string_view best = nearest(word, known);
+  return !best.empty() && edit_distance(word, best) <= std::min<std::size_t>(2, word.size() / 4);
 }
 
 }  // namespace
@@ -44,9 +53,15 @@ void TableReader::refuse_unknown(const Node::Member& member) const {
     if (is_here) known.push_back(spec.key);
     if (spec.key == member.key && elsewhere.empty()) elsewhere = spec.table;
   }
+  const std::string where = table_ == "deck" ? "at the top level" : fmt::format("in {}", table_);
+  const auto left_out = find_not_modelled(table_, member.key);
+  if (left_out && !is_misspelt(member.key, known)) {
+    throw InputError(member.place,
+                     fmt::format("{} {}: {} not modelled", member.key, where, left_out->physics),
+                     std::string(left_out->instead));
+  }
   std::string remedy = suggest(member.key, known);
   if (!elsewhere.empty()) remedy += fmt::format("; {} is a key of {}", member.key, elsewhere);
-  const std::string where = table_ == "deck" ? "at the top level" : fmt::format("in {}", table_);
   throw InputError(member.place,
                    fmt::format("unknown key '{}' {}{}", member.key, where,
                                more_.empty() ? "" : fmt::format(" of kind {}", more_)),
@@ -162,7 +177,9 @@ std::vector<const Node*> TableReader::tables(std::string_view key) const {
   const Node* found = value(key);
   if (!found) return {};
   if (found->kind != Node::Kind::Array) {
-    fail_type(*found, key, "an array of tables", fmt::format("head each with [[{}]]", key));
+    fail_type(*found, key, "an array of tables",
+              table_ == "deck" ? fmt::format("head each with [[{}]]", key)
+                               : fmt::format("write {} = [{{ ... }}, ...]", key));
   }
   std::vector<const Node*> nodes;
   for (const Node& item : found->items) {

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <barchan/core/deck/nearest.hpp>
+#include <barchan/core/deck/not_modelled.hpp>
 
 namespace barchan::deck {
 
@@ -76,12 +77,28 @@ double checked_number(const Node& node, const KeySpec& spec) {
   return value;
 }
 
-std::int64_t checked_integer(const Node& node, const KeySpec& spec) {
-  if (node.kind != Node::Kind::Integer) {
-    fail_type(node, spec.key, "an integer", "write it without quotes and without a decimal point");
+std::int64_t whole_number(const Node& node, std::string_view what) {
+  constexpr double kExact = 0x1p53;  // up to here every whole number is a double
+  if (!node.is_number())
+    fail_type(node, what, "an integer", "write it without quotes, such as 1000 or 1e3");
+  if (node.kind == Node::Kind::Integer) return node.integer;
+  const double value = finite_number(node, what);
+  if (value != std::floor(value)) {
+    throw InputError(node.place(), fmt::format("{} = {} is not a whole number", what, value),
+                     "write one, such as 1000 or 1e3");
   }
-  checked_number(node, spec);
-  return node.integer;
+  if (std::abs(value) > kExact) {
+    throw InputError(node.place(), fmt::format("{} = {} is too large", what, value),
+                     "with a point or an exponent numbers are exact up to 9007199254740992; write "
+                     "all digits of a larger one");
+  }
+  return static_cast<std::int64_t>(value);
+}
+
+std::int64_t checked_integer(const Node& node, const KeySpec& spec) {
+  const std::int64_t value = whole_number(node, spec.key);
+  (void)checked_number(node, spec);
+  return value;
 }
 
 std::string checked_string(const Node& node, const KeySpec& spec) {
@@ -92,10 +109,12 @@ std::string checked_string(const Node& node, const KeySpec& spec) {
     for (const std::string_view choice : choices) {
       if (node.text == choice) return node.text;
     }
+    const auto left_out = find_not_modelled(spec.table, node.text);
     throw InputError(
         node.place(),
         fmt::format("{} = \"{}\" is not one of {}", spec.key, node.text, type_text(spec)),
-        suggest(node.text, choices));
+        left_out ? fmt::format("{} not modelled: {}", left_out->physics, left_out->instead)
+                 : suggest(node.text, choices));
   }
   if (node.text.empty()) {
     throw InputError(node.place(), fmt::format("{} is empty", spec.key),

@@ -22,6 +22,9 @@ Vec3 finite_vector(const Node& node, int dimension, std::string_view what);
 
 double checked_number(const Node& node,
                       const KeySpec& spec);  ///< finite and in the range of its type
+
+/// Written as one, or as a number without a fraction, such as 1e3.
+std::int64_t whole_number(const Node& node, std::string_view what);
 std::int64_t checked_integer(const Node& node, const KeySpec& spec);
 std::string checked_string(const Node& node,
                            const KeySpec& spec);  ///< a Choice must be one of its words

@@ -6,18 +6,21 @@
 #include <barchan/core/error.hpp>
 #include <barchan/core/generators/close_pairs.hpp>
 #include <barchan/core/generators/make_particles.hpp>
+#include <barchan/core/vec_text.hpp>
 
 namespace barchan {
 namespace {
 
-std::string at(const ParticleData& p) {
-  return fmt::format("particle {} at ({:.6g}, {:.6g}, {:.6g})", p.id, p.position.x(),
-                     p.position.y(), p.position.z());
+using PlaceOf = std::function<SourcePlace(std::size_t)>;
+
+std::string at(const ParticleData& p, int dimension) {
+  return fmt::format("particle {} at {}", p.id, in_brackets(p.position, dimension));
 }
 
-void check_each(const Model& model, const ParticleData& p) {
+void check_each(const Model& model, const ParticleData& p, std::size_t index,
+                const PlaceOf& place_of) {
   const auto refuse = [&](const std::string& what, const char* remedy) {
-    throw InputError(at(p) + " " + what, remedy);
+    throw InputError(place_of(index), at(p, model.dimension) + " " + what, remedy);
   };
   const bool moves = !p.velocity.isZero(0.0) || !p.omega.isZero(0.0);
   if (p.fixed && moves)
@@ -96,7 +99,31 @@ std::vector<BondData> checked_bonds(const Model& model, const ParticleSet& set,
   return bonds;
 }
 
-void check_overlaps(const Model& model, const ParticleSet& set, std::span<const BondData> bonds) {
+/// Where the other of two is, without what both have in common.
+std::string place_beside(const SourcePlace& other, const SourcePlace& place) {
+  const bool is_same_file = other.file == place.file;
+  if (other.file.empty() || (is_same_file && other.line == place.line)) return {};
+  if (is_same_file) return fmt::format(" (line {})", other.line);
+  return other.line > 0 ? fmt::format(" ({}:{})", other.file, other.line)
+                        : fmt::format(" ({})", other.file);
+}
+
+[[noreturn]] void refuse_overlap(const Model& model, const ParticleSet& set, double overlap,
+                                 std::size_t i, std::size_t j, const PlaceOf& place_of) {
+  const ParticleData& a = set.particles[i];
+  const ParticleData& b = set.particles[j];
+  const SourcePlace second = place_of(j);
+  const std::string first = place_beside(place_of(i), second);
+  throw InputError(
+      second,
+      fmt::format("{} overlaps {}{} by {:.0f} % of the smaller radius", at(b, model.dimension),
+                  at(a, model.dimension), first, 100.0 * overlap / std::min(a.radius, b.radius)),
+      fmt::format("at most {:.0f} %: do the regions of two sources overlap?",
+                  100.0 * kGrossOverlap));
+}
+
+void check_overlaps(const Model& model, const ParticleSet& set, std::span<const BondData> bonds,
+                    const PlaceOf& place_of) {
   const std::vector<ParticleData>& particles = set.particles;
   std::vector<Grain> grains;
   grains.reserve(particles.size());
@@ -110,22 +137,22 @@ void check_overlaps(const Model& model, const ParticleSet& set, std::span<const 
     if (overlap <= kGrossOverlap * smaller || (a.fixed && b.fixed)) return true;
     const BondData bond{std::min(a.id, b.id), std::max(a.id, b.id), 0};
     if (std::binary_search(bonds.begin(), bonds.end(), bond, is_less)) return true;
-    throw InputError(fmt::format("{} overlaps {} by {:.0f} % of the smaller radius", at(a), at(b),
-                                 100.0 * overlap / smaller),
-                     fmt::format("at most {:.0f} %: do the regions of two sources overlap?",
-                                 100.0 * kGrossOverlap));
+    refuse_overlap(model, set, overlap, std::min(i, j), std::max(i, j), place_of);
   });
 }
 
 }  // namespace
 
-void check_particles(const Model& model, const ParticleSet& set) {
+void check_particles(const Model& model, const ParticleSet& set, const PlaceOf& place_of) {
+  if (!place_of) return check_particles(model, set, [](std::size_t) { return SourcePlace{}; });
   if (set.particles.empty())
-    throw InputError("there are no particles", "give at least one [[particles]] table");
-  for (const ParticleData& particle : set.particles) check_each(model, particle);
+    throw InputError(SourcePlace{model.deck_file, 0, 0}, "there are no particles",
+                     "give at least one [[particles]] table");
+  for (std::size_t i = 0; i < set.particles.size(); ++i)
+    check_each(model, set.particles[i], i, place_of);
   const std::vector<std::int64_t> ids = sorted_ids(set);
   const std::vector<BondData> bonds = checked_bonds(model, set, ids);
-  check_overlaps(model, set, bonds);
+  check_overlaps(model, set, bonds, place_of);
 }
 
 }  // namespace barchan

@@ -1,11 +1,11 @@
 #include <barchan/core/generators/check_walls.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <barchan/core/error.hpp>
 #include <barchan/core/generators/make_particles.hpp>
 #include <barchan/core/grid.hpp>
+#include <barchan/core/vec_text.hpp>
 #include <barchan/core/wall_shape.hpp>
 
 namespace barchan {
@@ -44,9 +44,8 @@ std::optional<std::string> intrusion(const WallSpec& wall, const WallFoot& foot,
   if (particle.fixed && !wall.is_loaded) return std::nullopt;
   const double overlap = particle.radius - foot.distance;
   if (!(overlap > kGrossOverlap * particle.radius)) return std::nullopt;
-  const double* x = particle.position.data();
   const std::string who =
-      fmt::format("particle {} at ({:.6g})", particle.id, fmt::join(x, x + dimension, ", "));
+      fmt::format("particle {} at {}", particle.id, in_brackets(particle.position, dimension));
   if (foot.distance <= 0.0)
     return fmt::format("{} has its centre {} wall '{}'", who, foot.distance < 0.0 ? "behind" : "on",
                        wall.name);

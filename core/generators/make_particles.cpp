@@ -12,6 +12,7 @@
 #include <barchan/core/generators/link_bonds.hpp>
 #include <barchan/core/generators/make_particles.hpp>
 #include <barchan/core/generators/packing.hpp>
+#include <barchan/core/vec_text.hpp>
 
 namespace barchan {
 namespace {
@@ -52,6 +53,16 @@ bool moves(const ParticleData& particle) {
   return !particle.velocity.isZero(0.0) || !particle.omega.isZero(0.0);
 }
 
+/// Of a particle of a source. A file is read once more: an error ends all anyway.
+SourcePlace place_in(const ParticleSource& source, std::size_t index) {
+  if (const auto* list = std::get_if<ListSource>(&source.kind))
+    return index < list->places.size() ? list->places[index] : source.place;
+  const auto* file = std::get_if<FileSource>(&source.kind);
+  if (file == nullptr) return source.place;
+  const ParticleFile rows = read_particles(file->path);
+  return {rows.file, index < rows.lines.size() ? rows.lines[index] : 0, 0};
+}
+
 /// Appends source after source; holds the set under construction.
 class Maker {
  public:
@@ -62,7 +73,7 @@ class Maker {
     has_own_bonds_ = false;
     std::visit([&](const auto& kind) { add_kind(source, kind); }, source.kind);
     for (std::size_t i = first; i < set_.particles.size(); ++i)
-      finish_particle(set_.particles[i], source);
+      finish_particle(set_.particles[i], source, i - first);
     if (source.bond && !has_own_bonds_) link_bonds(model_, source, first, set_);
   }
 
@@ -104,7 +115,11 @@ class Maker {
     for (const ParticleData& particle : set_.particles) taken.insert(particle.id);
     for (std::size_t i = 0; i < file.particles.size(); ++i) {
       const std::int64_t id = file.particles[i].id;
-      if (id < kHighest && !taken.contains(id)) continue;
+      if (id >= kHighest)
+        throw InputError(SourcePlace{file.file, file.lines[i], 0},
+                         fmt::format("particle id {} is too large", id),
+                         fmt::format("ids go up to {}", kHighest - 1));
+      if (!taken.contains(id)) continue;
       throw InputError(
           SourcePlace{file.file, file.lines[i], 0},
           fmt::format("particle id {} is already taken", id),
@@ -131,8 +146,8 @@ class Maker {
       refuse("leaves the plane", "in 2D z, vz, omegax and omegay are zero");
     wrap(particle.position, model_.domain, model_.dimension);
     if (!is_inside(model_.domain, particle.position, model_.dimension)) {
-      refuse(fmt::format("at ({:.6g}, {:.6g}, {:.6g}) is outside the domain", particle.position.x(),
-                         particle.position.y(), particle.position.z()),
+      refuse(fmt::format("at {} is outside the domain",
+                         in_brackets(particle.position, model_.dimension)),
              "enlarge the domain or leave the particle out");
     }
     particle.velocity += source.velocity;
@@ -170,20 +185,21 @@ class Maker {
     return std::isinf(source.fixed->lo.x()) || std::holds_alternative<ListSource>(source.kind);
   }
 
-  void finish_particle(ParticleData& particle, const ParticleSource& source) const {
+  /// @param index  within the source
+  void finish_particle(ParticleData& particle, const ParticleSource& source,
+                       std::size_t index) const {
     wrap(particle.position, model_.domain, model_.dimension);
     particle.fixed = is_fixed(particle, source);
     if (is_contradictory(particle, source)) {
-      throw InputError(source.place,
+      throw InputError(place_in(source, index),
                        fmt::format("particle {} is fixed and has a velocity", particle.id), kStays);
     }
     if (particle.fixed) particle.velocity = particle.omega = Vec3::Zero();
     if (is_inside(model_.domain, particle.position, model_.dimension)) return;
-    throw InputError(
-        source.place,
-        fmt::format("particle {} at ({:.6g}, {:.6g}, {:.6g}) is outside the domain", particle.id,
-                    particle.position.x(), particle.position.y(), particle.position.z()),
-        "keep the source within the domain");
+    throw InputError(place_in(source, index),
+                     fmt::format("particle {} at {} is outside the domain", particle.id,
+                                 in_brackets(particle.position, model_.dimension)),
+                     "keep the source within the domain");
   }
 
   const Model& model_;
@@ -213,6 +229,13 @@ ParticleSet make_particles(const Model& model, std::span<const ParticleSource> s
   }
   begins.push_back(maker.size());
   return maker.take();
+}
+
+SourcePlace place_of_particle(std::span<const ParticleSource> sources,
+                              std::span<const std::size_t> begins, std::size_t index) {
+  const auto next = std::upper_bound(begins.begin(), begins.end(), index);
+  const auto s = static_cast<std::size_t>(next - begins.begin()) - 1;
+  return place_in(sources[s], index - begins[s]);
 }
 
 }  // namespace barchan

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -27,7 +28,14 @@ namespace barchan {
 /// type without material, a bond to an unknown id or of an unknown law, or two particles that
 /// overlap by more than kGrossOverlap of the smaller radius (unless they are bonded, or both
 /// fixed).
-void check_particles(const Model& model, const ParticleSet& set);
+/// @param place_of  where the particle of an index comes from, for the message
+void check_particles(const Model& model, const ParticleSet& set,
+                     const std::function<SourcePlace(std::size_t)>& place_of = {});
+
+/// Where a particle of make_particles comes from: its line in a file or its entry in a list, else
+/// its source. @param begins  of make_particles
+[[nodiscard]] SourcePlace place_of_particle(std::span<const ParticleSource> sources,
+                                            std::span<const std::size_t> begins, std::size_t index);
 
 inline constexpr double kGrossOverlap = 0.5;
 

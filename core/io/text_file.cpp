@@ -148,15 +148,15 @@ std::string with_point(std::string_view text) {
 }
 
 [[noreturn]] void malformed(std::string_view text, std::string_view what, const LineReader& lines,
-                            const char* kind) {
+                            const char* kind,
+                            const char* remedy = "a number such as 1.5e-3 belongs here") {
   if (const std::string number = with_point(text); !number.empty()) {
     throw InputError(lines.place(text),
                      std::string(what) + " is " + in_quotes(text) + ", which has a decimal comma",
                      "write a decimal point: " + number);
   }
   throw InputError(lines.place(text),
-                   std::string(what) + " is " + in_quotes(text) + ", which is not " + kind,
-                   "a number such as 1.5e-3 belongs here");
+                   std::string(what) + " is " + in_quotes(text) + ", which is not " + kind, remedy);
 }
 
 }  // namespace
@@ -174,8 +174,10 @@ double parse_number(std::string_view text, std::string_view what, const LineRead
 std::int64_t parse_integer(std::string_view text, std::string_view what, const LineReader& lines) {
   std::int64_t value = 0;
   const auto result = scan(text, value);
-  if (result.ec == std::errc::result_out_of_range) malformed(text, what, lines, "within 64 bits");
-  if (result.ec != std::errc{}) malformed(text, what, lines, "a whole number");
+  if (result.ec == std::errc::result_out_of_range)
+    malformed(text, what, lines, "within 64 bits", "ids go up to 4611686018427387903");
+  if (result.ec != std::errc{})
+    malformed(text, what, lines, "a whole number", "a whole number such as 12 belongs here");
   return value;
 }
 

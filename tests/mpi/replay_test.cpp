@@ -124,7 +124,7 @@ TEST(StepTimes, ExposeNoMoreThanIsInFlightAndFillTheLoop) {
       EXPECT_GE(seconds, -1e-6) << name;
       sum += seconds;
     }
-    EXPECT_NEAR(sum, t.loop_seconds, 0.02 * t.loop_seconds);
+    EXPECT_NEAR(sum, t.loop_seconds, 0.001 * t.loop_seconds);
     EXPECT_LE(t.exposed_seconds, t.in_flight_seconds * 1.001 + 1e-6);
     EXPECT_EQ(t.exposed_seconds > 0.0, sim.communicator().size() > 1);
   }

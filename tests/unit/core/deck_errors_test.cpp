@@ -95,8 +95,8 @@ INSTANTIATE_TEST_SUITE_P(
               {":10:8:", "expected a string, found an integer"}},
         Fault{"NumberForInteger",
               "count = 1000",
-              "count = 1e3",
-              {":34:9:", "expected an integer, found a number"}},
+              "count = 1.5",
+              {":34:9:", "count = 1.5 is not a whole number", "1e3"}},
         Fault{"NumberForVector",
               "gravity = [0.0, -9.81]",
               "gravity = -9.81",
@@ -194,6 +194,23 @@ INSTANTIATE_TEST_SUITE_P(
               "restitution = 1.0\n[[material]]\nname = \"duct\"\ndensity = 250.0\n"
               "normal_damping = 5.0\n",
               {":15:8:", "'soil' and 'duct'", "different ways", "both a restitution"}},
+        Fault{"TooManyMaterials",
+              "[[bond]]",
+              [] {
+                std::string text;
+                for (int m = 0; m < 21; ++m)
+                  text += "[[material]]\nname = \"m" + std::to_string(m) + "\"\ndensity = 1.0\n";
+                return text + "[[bond]]";
+              }(),
+              {"23 materials", "1 to 22"}},
+        Fault{"WarningBeyondTheError",
+              "[[bond]]",
+              "[limits]\noverlap_warning = 0.9\noverlap_error = 0.5\n[[bond]]",
+              {":20:19:", "overlap_warning = 0.9 is beyond overlap_error = 0.5"}},
+        Fault{"TooManyCheckpointsKept",
+              "[[bond]]",
+              "[checkpoint]\nkeep = 99999999999\n[[bond]]",
+              {":20:8:", "out of range", "1 to 1000"}},
         Fault{"EndlessStage",
               "max_time = 1.0",
               "[[stage]]\nname = \"load\"",

@@ -194,12 +194,13 @@ TEST_F(ParticlesFromFile, NameTheLineOfWhatDoesNotFitTheDeck) {
   EXPECT_NE(message("40,1,0.1,50,1,1,0,0\n7,1,0.1,50,1,1,0,0\n")
                 .find(path_ + ":3: particle id 7 is already"),
             std::string::npos);
-  EXPECT_NE(
-      message("40,1,0.1,50,1,11,0,0\n").find(path_ + ":2: particle 40 at (1, 11, 0) is outside"),
-      std::string::npos);
+  EXPECT_NE(message("40,1,0.1,50,1,11,0,0\n").find(path_ + ":2: particle 40 at (1, 11) is outside"),
+            std::string::npos);
   EXPECT_NE(message("40,3,0.1,50,1,1,0,0\n").find("is of type 3"), std::string::npos);
   EXPECT_NE(message("40,1,0.1,50,1,1,2,0\n").find("leaves the plane"), std::string::npos);
-  EXPECT_NE(message("9223372036854775807,1,0.1,50,1,1,0,0\n").find("already taken"),
+  EXPECT_NE(message("9223372036854775807,1,0.1,50,1,1,0,0\n")
+                .find(path_ + ":2: particle id 9223372036854775807 is too large (ids go up to "
+                              "4611686018427387903)"),
             std::string::npos);
 }
 
@@ -242,6 +243,30 @@ TEST(CheckParticles, NamesWhatIsWrong) {
   EXPECT_NE(message([](Set& s) { s.bonds[0].law = 7; }).find("unknown law"), std::string::npos);
   EXPECT_NE(message([](Set& s) { s.bonds.push_back(s.bonds[4]); }).find("bonded twice"),
             std::string::npos);
+}
+
+TEST(CheckParticles, SaysWhereAPairThatOverlapsComesFrom) {
+  const Model model = model_of(2);
+  ListSource list;
+  ParticleData p{1, 0, 0.1, 1, {5, 5, 0}, Vec3::Zero(), Vec3::Zero()};
+  list.particles = {p, p};
+  list.places = {{"deck.toml", 7, 3}, {"deck.toml", 9, 3}};
+  ParticleSource listed = ring(30);
+  listed.kind = list;
+  listed.bond.reset();
+  const std::vector sources{ring(30), listed};
+  std::vector<std::size_t> begins;
+  const ParticleSet set = make_particles(model, sources, begins);
+
+  const std::string message = message_of([&] {
+    check_particles(model, set,
+                    [&](std::size_t i) { return place_of_particle(sources, begins, i); });
+  });
+
+  EXPECT_NE(message.find("deck.toml:9:3: particle 32 at (5, 5) overlaps particle 31 at (5, 5) "
+                         "(line 7) by 200 %"),
+            std::string::npos)
+      << message;
 }
 
 TEST(CheckParticles, RefusesGrossOverlapsUnlessBondedOrFixed) {

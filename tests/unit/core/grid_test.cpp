@@ -73,7 +73,13 @@ TEST(Grid, RefusesAPeriodicAxisShorterThanTwiceTheReach) {
   Domain d = box(1.9, 5.0);
   EXPECT_NO_THROW(Grid<2>(d, 1.0, 10));
   d.periodic[0] = true;
-  EXPECT_THROW(Grid<2>(d, 1.0, 10), InputError);
+  d.place = {"deck.toml", 4, 1};
+  try {
+    Grid<2>(d, 1.0, 10);
+    FAIL() << "too narrow a period is taken";
+  } catch (const InputError& error) {
+    EXPECT_EQ(std::string(error.what()).rfind("deck.toml:4:1: ", 0), 0u) << error.what();
+  }
 }
 
 }  // namespace

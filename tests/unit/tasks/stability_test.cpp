@@ -138,7 +138,7 @@ TEST(StepLimits, ComeSmallestFirst) {
 
 TEST(CheckTimeStep, NamesTheLimitAndALargestStepThatWouldDo) {
   Model model = model_of(1);
-  model.deck_file = "case.toml";
+  model.time.place = {"case.toml", 7, 8};
   const auto limits = step_limits(model, {{disk(1, 1, 0.05), disk(2, 2, 0.05)}, {}});
   model.time.step = 2.0 * limits.front().step;
 
