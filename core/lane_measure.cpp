@@ -71,12 +71,14 @@ template <int Dim>
 void measure_wall_contacts(const Lane<Dim>& lane, Measures& m) {
   const auto& store = lane.store();
   const auto& world = lane.world();
-  for (const WallContact<Dim>& c : lane.wall_contacts().list()) {
+  const auto walls = lane.wall_contacts().list();
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const WallContact<Dim>& c = walls[k];
     const auto w = static_cast<std::size_t>(c.wall);
     const double overlap =
         store.radius(c.row) -
         world.wall_shapes[w].foot(world.walls[w].point, c.image, store.x(c.row)).distance;
-    if (overlap <= 0.0) continue;
+    if (overlap <= 0.0 || !lane.wall_contacts().is_felt(store, world.wall_view(), k)) continue;
     const double* law =
         world.laws.view().rows +
         LawView::kRow * world.laws.code(world.wall_specs[w].material,

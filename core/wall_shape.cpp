@@ -66,6 +66,7 @@ WallFoot WallShape<Dim>::foot(const Vec3& point, const WallImage& image, const d
     d[c] = (point[c] - x[c]) + image[static_cast<std::size_t>(c)] * box_.length[c];
   const double height = -dot(d, normal_);  // of the position over the wall
   WallFoot foot;
+  foot.inside = kEndless;
   if (is_plane_) {
     foot.distance = height;
     for (int c = 0; c < Dim; ++c) foot.to_foot[c] = -height * normal_[c];
@@ -75,6 +76,9 @@ WallFoot WallShape<Dim>::foot(const Vec3& point, const WallImage& image, const d
         half_width_ == kEndless ? 0.0 : a - std::clamp(a, -half_width_, half_width_);
     const double beyond_b =
         half_depth_ == kEndless ? 0.0 : b - std::clamp(b, -half_depth_, half_depth_);
+    foot.inside = half_width_ - std::fabs(a);
+    if constexpr (Dim == 3) foot.inside = std::min(foot.inside, half_depth_ - std::fabs(b));
+    foot.inside = std::max(foot.inside, 0.0);
     double d2 = 0.0;
     for (int c = 0; c < Dim; ++c) {
       foot.to_foot[c] = -height * normal_[c] + beyond_a * along_[c] + beyond_b * across_[c];

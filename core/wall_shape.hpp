@@ -19,6 +19,7 @@ struct WallFoot {
   double distance = 0.0;        ///< [m]; of a plane the height over it, below zero behind it
   Vec3 to_foot = Vec3::Zero();  ///< from the position [m]
   Vec3 arm = Vec3::Zero();      ///< from the wall's point (of this image) to the foot [m]
+  double inside = 0.0;  ///< how far the foot is from the wall's rim; infinite on a plane [m]
 };
 
 /// Shape of a wall in a periodic box, apart from where it is.

@@ -15,6 +15,14 @@ LawConstants<S> constants_of(const LawTable& laws, std::uint8_t code) {
           r[LawView::CtRate], r[LawView::CnCritical], r[LawView::CtCritical]};
 }
 
+/// Of the radius: walls that are as near as this meet.
+constexpr double kMeets = 0x1p-20;
+
+double distance_between(const Vec3& a, const Vec3& b) {
+  const double x = a[0] - b[0], y = a[1] - b[1], z = a[2] - b[2];
+  return std::sqrt(x * x + y * y + z * z);
+}
+
 /// Of the radius: where a centre is as near as this to a wall, only the wall's normal says whereto.
 constexpr double kOnWall = 0x1p-300;
 
@@ -125,14 +133,50 @@ void WallContacts<Dim>::foresee_wrap(const ParticleStore<Dim>& store, const Grid
 }
 
 template <int Dim>
+WallFoot WallContacts<Dim>::foot_of(const ParticleStore<Dim>& store, const WallView<Dim>& walls,
+                                    const WallContact<Dim>& contact) {
+  const auto w = static_cast<std::size_t>(contact.wall);
+  return walls.shapes[w].foot(walls.states[w].point, contact.image, store.x(contact.row));
+}
+
+/// @param foot  of the contact at this place. @return null: the contact is felt itself
+template <int Dim>
+const WallContact<Dim>* WallContacts<Dim>::felt_instead(const ParticleStore<Dim>& store,
+                                                        const WallView<Dim>& walls,
+                                                        std::size_t place,
+                                                        const WallFoot& foot) const {
+  const std::int32_t row = list_[place].row;
+  const double radius = store.radius(row), near = kMeets * radius;
+  if (foot.inside > near || foot.distance >= radius) return nullptr;
+  double at[Dim];  // the foot
+  for (int c = 0; c < Dim; ++c) at[c] = store.x(row)[c] + foot.to_foot[c];
+  std::size_t k = place;
+  while (k > 0 && list_[k - 1].row == row) --k;
+  for (; k < list_.size() && list_[k].row == row; ++k) {
+    const WallContact<Dim>& other = list_[k];
+    const auto w = static_cast<std::size_t>(other.wall);
+    if (k == place ||
+        std::fabs(walls.shapes[w].foot(walls.states[w].point, other.image, at).distance) > near)
+      continue;
+    const WallFoot there = foot_of(store, walls, other);
+    const bool is_same = distance_between(there.to_foot, foot.to_foot) <= near;
+    if (!is_same || there.inside > near || k < place) return &other;
+  }
+  return nullptr;
+}
+
+template <int Dim>
 typename WallContacts<Dim>::Push WallContacts<Dim>::push(const ParticleStore<Dim>& store,
-                                                         const Frame& frame,
-                                                         WallContact<Dim>& contact) {
+                                                         const Frame& frame, std::size_t place,
+                                                         WallContact<Dim>& contact) const {
   const auto w = static_cast<std::size_t>(contact.wall);
   const WallSpec& spec = frame.walls.specs[w];
   const WallState& state = frame.walls.states[w];
-  const WallFoot foot =
-      frame.walls.shapes[w].foot(state.point, contact.image, store.x(contact.row));
+  const WallFoot foot = foot_of(store, frame.walls, contact);
+  if (const auto* other = felt_instead(store, frame.walls, place, foot)) {
+    std::copy(std::begin(other->spring), std::end(other->spring), contact.spring);
+    return {{}, foot.arm, Vec3::Zero()};
+  }
   Approach to = approach_of(foot, spec.normal, store.radius(contact.row));
   to.inverse_mass = store.inverse_mass(contact.row) + (spec.is_loaded ? 1.0 / spec.mass : 0.0);
   const auto pair = pair_with_wall(store, contact.row, to, state.velocity);
@@ -151,7 +195,7 @@ void WallContacts<Dim>::press(const ParticleStore<Dim>& store, const Frame& fram
                               std::span<WallSums> sums) {
   for (std::size_t k = 0; k < loaded_.size(); ++k) {
     WallContact<Dim>& contact = list_[loaded_[k]];
-    const Push p = push(store, frame, contact);
+    const Push p = push(store, frame, loaded_[k], contact);
     kept_[k] = p.on_particle;
     if (p.on_wall.isZero(0.0)) continue;
     for (int c = 0; c < Dim; ++c)
@@ -175,7 +219,7 @@ void WallContacts<Dim>::add_to_rows(ParticleStore<Dim>& store, const Frame& fram
       add_to_row(store, it->row, kept_[static_cast<std::size_t>(kept++)]);
       continue;
     }
-    const Push p = push(store, frame, *it);
+    const Push p = push(store, frame, static_cast<std::size_t>(it - list_.begin()), *it);
     add_to_row(store, it->row, p.on_particle);
     const Vec3& v = frame.walls.states[w].velocity;
     const bool moves = v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0;
@@ -187,8 +231,9 @@ void WallContacts<Dim>::add_to_rows(ParticleStore<Dim>& store, const Frame& fram
 template <int Dim>
 void WallContacts<Dim>::measure(const ParticleStore<Dim>& store, const Frame& frame,
                                 std::span<WallSums> sums) const {
-  for (WallContact<Dim> contact : list_) {
-    const Push p = push(store, frame, contact);
+  for (std::size_t k = 0; k < list_.size(); ++k) {
+    WallContact<Dim> contact = list_[k];
+    const Push p = push(store, frame, k, contact);
     if (p.on_wall.isZero(0.0)) continue;
     WallSums& sum = sums[static_cast<std::size_t>(contact.wall)];
     const Vec3 &r = p.arm, &f = p.on_wall;

@@ -68,6 +68,16 @@ struct WallView {
 /// A wall is a particle of radius 0 at its point nearest to the particle, and of infinite mass
 /// unless it is a loaded plate. One that is touched by several images is touched several times.
 ///
+/// Walls that meet have one surface. Where the foot on a wall's rim lies on another wall, too, a
+/// particle feels the other wall, or one of the two where both have the same foot:
+///
+///        o                      o
+///     ───┴──+───────         ───┴──+         of two plates that meet at + this particle feels the
+///                                   ╲        left one alone
+///
+/// The contact that is not felt keeps the spring of the one that is, so that a particle takes its
+/// spring over the joint.
+///
 /// The force of a step k on a loaded plate moves the plate in that step. So its contacts come first
 /// (`press`), and while the sum over all ranks is on its way, all rows take up what was kept:
 ///
@@ -87,6 +97,12 @@ class WallContacts {
   [[nodiscard]] std::size_t bytes() const {
     return list_.capacity() * sizeof(WallContact<Dim>) + loaded_.capacity() * sizeof(std::size_t) +
            kept_.capacity() * sizeof(Force);
+  }
+
+  /// Does the particle feel this contact of the list, or that with a wall which meets this one?
+  [[nodiscard]] bool is_felt(const ParticleStore<Dim>& store, const WallView<Dim>& walls,
+                             std::size_t place) const {
+    return felt_instead(store, walls, place, foot_of(store, walls, list_[place])) == nullptr;
   }
 
   struct Frame {
@@ -110,7 +126,13 @@ class WallContacts {
     Force on_particle;
     Vec3 arm, on_wall;
   };
-  static Push push(const ParticleStore<Dim>& store, const Frame& frame, WallContact<Dim>& contact);
+  /// Of the contact at this place of the list, whose spring is stretched in `contact`.
+  Push push(const ParticleStore<Dim>& store, const Frame& frame, std::size_t place,
+            WallContact<Dim>& contact) const;
+  static WallFoot foot_of(const ParticleStore<Dim>& store, const WallView<Dim>& walls,
+                          const WallContact<Dim>& contact);
+  const WallContact<Dim>* felt_instead(const ParticleStore<Dim>& store, const WallView<Dim>& walls,
+                                       std::size_t place, const WallFoot& foot) const;
 
   std::vector<WallContact<Dim>> list_;
   std::vector<std::size_t> loaded_;  ///< places in the list of contacts with loaded plates
