@@ -12,6 +12,7 @@
 #include <barchan/app/warning.hpp>
 #include <barchan/core/force_grain.hpp>
 #include <barchan/core/generators/check_walls.hpp>
+#include <barchan/tasks/forecast.hpp>
 #include <barchan/tasks/memory_estimate.hpp>
 #include <barchan/tasks/stability.hpp>
 #include <barchan/tasks/strip_plan.hpp>
@@ -125,9 +126,10 @@ void print_strips(const LoadedDeck& loaded, int wanted) {
       "for "
       "set-up.\n",
       bytes, readable_bytes(all).c_str());
-  std::printf("  Contact search: %s, skin %.3g m\n",
-              loaded.deck.model.search.kind == ContactSearchKind::Cells ? "cells" : "all-pairs",
-              loaded.deck.model.search.skin.value_or(default_skin(loaded.particles)));
+  std::printf(
+      "  Contact search: %s, skin %.3g m\n",
+      loaded.deck.model.search.kind == ContactSearchKind::Cells ? "cells" : "all-pairs",
+      loaded.deck.model.search.skin.value_or(default_skin(loaded.deck.model, loaded.particles)));
 }
 
 void print_stages(const Model& model) {
@@ -170,6 +172,13 @@ void print_step(const Model& model, const std::vector<StepLimit>& limits) {
   }
 }
 
+void print_forecast(const Model& model, const ParticleSet& particles) {
+  for (const std::string& what : speed_warnings(model, particles))
+    std::printf("  Warning: %s.\n", what.c_str());
+  for (const std::string& what : precision_warnings(model, particles))
+    std::printf("  Warning: %s.\n", what.c_str());
+}
+
 }  // namespace
 
 void check_deck(const CheckArguments& arguments) {
@@ -187,8 +196,10 @@ void check_deck(const CheckArguments& arguments) {
     std::printf("  Warning: %s.\n", what.c_str());
   print_stages(model);
   print_step(model, limits);
+  print_forecast(model, loaded.particles);
   print_strips(loaded, arguments.ranks);
   std::fflush(stdout);
+  check_precision(model, loaded.particles);
   check_time_step(model, limits);
 }
 

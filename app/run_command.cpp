@@ -17,6 +17,7 @@
 #include <barchan/core/error.hpp>
 #include <barchan/core/io/text_file.hpp>
 #include <barchan/tasks/exchange_setup.hpp>
+#include <barchan/tasks/forecast.hpp>
 #include <barchan/tasks/results/agree.hpp>
 #include <barchan/tasks/results/folder_claim.hpp>
 #include <barchan/tasks/results/run_results.hpp>
@@ -44,6 +45,7 @@ LoadedDeck load(const Communicator& world, const RunArguments& arguments,
     if (arguments.steps) model.time.num_steps = *arguments.steps;
     const auto limits = step_limits(model, loaded.particles);
     check_time_step(model, limits);
+    check_precision(model, loaded.particles);
     if (!limits.empty()) limit = limits.front();
   });
   return loaded;

@@ -48,7 +48,7 @@ void give_way(std::chrono::seconds turn) {
 [[noreturn]] void end_in_step(const Communicator& world, const StepError& error,
                               const std::string& what) {
   std::signal(SIGTERM, SIG_DFL);
-  if (!is_first_to_fail(world, error.step(), kTurn) || stop_is_requested()) give_way(kEnd);
+  if (!is_first_to_fail(world, error.order(), kTurn) || stop_is_requested()) give_way(kEnd);
   print_error(what);
   world.abort(kFailed);
 }

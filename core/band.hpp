@@ -18,7 +18,8 @@ struct Band {
   Planes planes;                  ///< of the ghosts
   PairList across;                ///< first particles owned, second ones ghosts
   std::vector<PairBlock> blocks;  ///< of `across`
-  double travel = 0.0;            ///< bound of how far ghosts have come since the last rebuild [m]
+  bool has_quick = false;  ///< a ghost moved farther than World::quick_travel in the last step
+  double travel = 0.0;     ///< bound of how far ghosts have come since the last rebuild [m]
 };
 
 }  // namespace barchan

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
@@ -35,14 +36,16 @@ class RunError : public std::runtime_error {
 };
 
 /// A RunError that one rank finds in a step. Other ranks may find one, too: the one to report is
-/// that of the first step, and in it of the lowest rank, since one rank alone would find the same.
+/// the first, which one rank alone would report.
 class StepError : public RunError {
  public:
-  StepError(std::int64_t step, const std::string& what) : RunError(what), step_(step) {}
-  [[nodiscard]] std::int64_t step() const { return step_; }
+  /// The lower the earlier: step, kind of error, ids of those that it is about.
+  using Order = std::array<std::int64_t, 4>;
+  StepError(const Order& order, const std::string& what) : RunError(what), order_(order) {}
+  [[nodiscard]] const Order& order() const { return order_; }
 
  private:
-  std::int64_t step_;
+  Order order_;
 };
 
 /// A RunError that every rank throws with the same text, so that rank 0 prints it for all.

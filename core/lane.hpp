@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -17,6 +18,7 @@
 #include <barchan/core/measures.hpp>
 #include <barchan/core/pair_list.hpp>
 #include <barchan/core/particle_store.hpp>
+#include <barchan/core/passage.hpp>
 #include <barchan/core/walls.hpp>
 #include <barchan/core/world.hpp>
 
@@ -77,12 +79,16 @@ class Lane {
   LinkCounts remove(std::span<const std::int64_t> ids);
 
   // ---- what a run that goes wrong says (lane_watch.cpp), between steps
-  /// A particle moved farther than half the skin in the last step, or is not finite.
-  [[nodiscard]] bool is_fast() const { return speeds_.is_beyond; }
+  /// A particle moved farther than World::most_travel() in the last step, or is not finite.
+  [[nodiscard]] bool is_fast() const { return is_beyond_; }
+  /// Two that passed each other in the step before the last one; of several the first.
+  [[nodiscard]] const Passage& passage() const { return passage_; }
   /// A particle that bore more in the last step than can be summed exactly.
   [[nodiscard]] const Overload& overload() const { return speeds_.overload; }
-  /// The last step went wrong: it is fast, or there is an overload.
-  [[nodiscard]] bool must_stop() const { return is_fast() || overload().id != 0; }
+  /// The last step went wrong in one of these ways.
+  [[nodiscard]] bool must_stop() const {
+    return is_fast() || passage_.exists() || overload().id != 0;
+  }
   /// Of those that did the one with the lowest id. @pre is_fast()
   [[nodiscard]] std::int32_t first_fast_row() const;
   /// The fastest one; one that is not finite before all others. -1: there is none
@@ -207,8 +213,20 @@ class Lane {
   [[nodiscard]] PairJob block_job(PairList& list, PairBlock& block, double travel);
   void pick_touching(PairList& list, PairBlock& block, PairJob& pairs, double travel);
   [[nodiscard]] double packing_margin() const;  ///< [m]
-  /// Of a component of velocity [m/s].
-  [[nodiscard]] double most_speed() const { return world_->most_travel / world_->dt; }
+  // lane_speeds.cpp
+  /// Of a component of velocity, beyond which step_travel() is looked at [m/s].
+  [[nodiscard]] double quick_speed() const {
+    return world_->quick_travel / (std::sqrt(double{Dim}) * world_->dt);
+  }
+  [[nodiscard]] double step_travel(std::int32_t row) const;
+  [[nodiscard]] double fastest_travel(Rows rows) const;
+  [[nodiscard]] bool is_beyond(double travel) const {
+    return !(travel <= world_->most_travel(lists_skin_));
+  }
+  void judge_speeds(Rows rows);
+  void find_quick();
+  void look_for_passages();
+  void look_for_passages(Side side);
   void pack(PairList& list, PairBlock& block, const std::uint8_t* masks);
   [[nodiscard]] bool packs() const {
     return world_->kernels.narrow != nullptr && world_->search == ContactSearchKind::Cells;
@@ -271,6 +289,10 @@ class Lane {
   double lists_skin_ = 0.0;  ///< [m]
   double outrun_ = 0.0;      ///< of the last step with the lists before these, see outrun_share
   RowSpeeds speeds_;         ///< of the rows of this step
+  bool is_beyond_ = false;   ///< see is_fast()
+  bool has_quick_ = false;   ///< an owned row moved farther than World::quick_travel
+  bool looks_ = false;       ///< for passages, in this step
+  Passage passage_;
   double step_travel_ = 0.0, travel_ = 0.0;  ///< bounds: of the last step, since the lists were cut
 
   /// A contact's spring while lists are made anew, by the rows that it had before.

@@ -211,6 +211,7 @@ void Lane<Dim>::restore_history() {
   }
   old_walls_.clear();
   removed_.clear();
+  find_quick();
 }
 
 template class Lane<2>;

@@ -12,10 +12,9 @@ namespace {
 /// Steps whose work on walls a sum can hold: a million contacts each.
 constexpr std::int64_t kCarryEvery = 512;
 
-/// Time over which springs stretch: in the first step, known by its half kick, nothing has moved
-/// yet.
+/// Time over which springs stretch.
 double spring_step(const StepFrame& frame, double dt) {
-  return frame.kick < dt ? 0.0 : dt;
+  return frame.has_moved(dt) ? dt : 0.0;
 }
 
 }  // namespace
@@ -52,7 +51,9 @@ void Lane<Dim>::begin_step(const StepFrame& frame) {
   step_travel_ = speeds_.top * world_->dt;
   travel_ += step_travel_;
   speeds_ = {};
+  looks_ = std::exchange(has_quick_, false) && frame_.has_moved(world_->dt);
   if (world_->search == ContactSearchKind::AllPairs) research_owned();
+  look_for_passages();
   rows_done_ = bands_[Left].exists ? bands_[Left].rows.end : 0;
   wall_sums_.resize(world_->walls.size());
   const bool is_carry_due = ++steps_since_start_ % kCarryEvery == 0;
@@ -84,6 +85,8 @@ void Lane<Dim>::run_block(Block& block) {
 template <int Dim>
 void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extras) {
   if (has_extras || !store_.external.empty()) {
+    if (frame_.has_moved(world_->dt))
+      PassageWatch<Dim>(*world_, store_, passage_).look_at(walls_.list(), {begin, end});
     bonds_.add_to_rows(store_, begin, end);
     const double dt = spring_step(frame_, world_->dt);
     walls_.add_to_rows(store_, wall_frame(dt), wall_sums_, begin, end);
@@ -102,12 +105,14 @@ void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extra
               world_->dt,
               {frame_.gravity[0], frame_.gravity[1], frame_.gravity[2]},
               frame_.local_damping,
-              most_speed(),
+              quick_speed(),
               world_->grain.most(),
               store_.id.data()};
   const RowKernel advance =
       frame_.local_damping != 0.0 ? world_->kernels.rows_damped : world_->kernels.rows;
-  speeds_.add(advance(rows));
+  const RowSpeeds speeds = advance(rows);
+  speeds_.add(speeds);
+  if (speeds.is_beyond) judge_speeds({begin, end});
   if (wraps_now_) wrap_rows({begin, end});
 }
 
@@ -139,7 +144,9 @@ void Lane<Dim>::unpack_halo(Side side, std::span<const std::byte> message) {
     const double* v = store_.v(g);
     top2 = std::max(top2, v[0] * v[0] + v[1] * v[1] + (Dim == 3 ? v[2] * v[2] : 0.0));
   }
-  bands_[side].travel += std::sqrt(top2) * world_->dt;
+  const double travel = std::sqrt(top2) * world_->dt;
+  bands_[side].travel += travel;
+  bands_[side].has_quick = travel > world_->quick_travel;
 }
 
 template <int Dim>
@@ -167,6 +174,7 @@ template <int Dim>
 void Lane<Dim>::finish_band(Side side) {
   Band& band = bands_[side];
   if (world_->search == ContactSearchKind::AllPairs) research_across(side);
+  look_for_passages(side);
   // Bonds come before contacts here too, as in begin_step: a pair whose bond breaks is in contact
   // in the same step.
   if (!bonds_.empty()) compute_bonds(side == Left ? BondSet<Dim>::Left : BondSet<Dim>::Right);

@@ -38,14 +38,6 @@ void take_worst_pair(const ParticleStore<Dim>& store, const PeriodicBox& box, co
   }
 }
 
-/// The largest number when something is not finite.
-template <int Dim>
-double speed2(const ParticleStore<Dim>& store, std::int32_t row) {
-  double v2 = 0.0;
-  for (int c = 0; c < Dim; ++c) v2 += store.v(row)[c] * store.v(row)[c] + 0.0 * store.x(row)[c];
-  return std::isfinite(v2) ? v2 : std::numeric_limits<double>::max();
-}
-
 }  // namespace
 
 template <int Dim>
@@ -96,15 +88,10 @@ LinkCounts Lane<Dim>::remove(std::span<const std::int64_t> ids) {
 
 template <int Dim>
 std::int32_t Lane<Dim>::first_fast_row() const {
-  const double most = most_speed();
   std::int32_t first = -1;
+  const auto id = [this](std::int32_t row) { return store_.id[static_cast<std::size_t>(row)]; };
   for (std::int32_t i = 0; i < store_.num_owned; ++i) {
-    bool is_fast = false;
-    for (int c = 0; c < Dim; ++c) {
-      is_fast = is_fast || !(std::fabs(store_.v(i)[c]) <= most) || !std::isfinite(store_.x(i)[c]);
-    }
-    const auto id = [this](std::int32_t row) { return store_.id[static_cast<std::size_t>(row)]; };
-    if (is_fast && (first < 0 || id(i) < id(first))) first = i;
+    if (is_beyond(step_travel(i)) && (first < 0 || id(i) < id(first))) first = i;
   }
   return first >= 0 ? first : fastest_row();
 }
@@ -114,7 +101,7 @@ std::int32_t Lane<Dim>::fastest_row() const {
   std::int32_t fastest = -1;
   double most = -1.0;
   for (std::int32_t i = 0; i < store_.num_owned; ++i) {
-    const double v2 = speed2(store_, i);
+    const double v2 = suspect_of(store_, i).speed2;
     const bool is_first = v2 == most && store_.id[static_cast<std::size_t>(i)] <
                                             store_.id[static_cast<std::size_t>(fastest)];
     if (v2 > most || is_first) fastest = i, most = v2;
@@ -124,13 +111,7 @@ std::int32_t Lane<Dim>::fastest_row() const {
 
 template <int Dim>
 Suspect Lane<Dim>::suspect(std::int32_t row) const {
-  Suspect s;
-  s.id = store_.id[static_cast<std::size_t>(row)];
-  std::copy_n(store_.x(row), Dim, s.position);
-  std::copy_n(store_.v(row), Dim, s.velocity);
-  s.radius = store_.radius(row);
-  s.speed2 = speed2(store_, row);
-  return s;
+  return suspect_of(store_, row);
 }
 
 template <int Dim>
@@ -156,7 +137,7 @@ typename Lane<Dim>::Partners Lane<Dim>::partners_before_step(std::int32_t row) c
     return x;
   };
   const auto at = before(row);
-  const bool is_finite = speed2(store_, row) < std::numeric_limits<double>::max();
+  const bool is_finite = suspect_of(store_, row).speed2 < std::numeric_limits<double>::max();
   const auto look = [&](const PairList& list) {
     for (std::size_t k = 0; k < list.i.size(); ++k) {
       if ((list.i[k] != row && list.j[k] != row) || list.i[k] == store_.waste()) continue;

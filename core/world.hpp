@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -32,10 +34,17 @@ struct World {
   std::vector<WallShape<Dim>> wall_shapes;
   std::vector<WallState> walls;
   ContactSearchKind search = ContactSearchKind::Cells;
-  double skin = 0.0;         ///< that the next lists get [m]
-  double most_travel = 0.0;  ///< in a step, beyond which contacts may be missed [m]
-  double dt = 0.0;           ///< [s]
+  double skin = 0.0;  ///< that the next lists get [m]
+  /// Half of the smallest radius: where nothing moves farther in a step, no contact is skipped [m].
+  double quick_travel = std::numeric_limits<double>::infinity();
+  double dt = 0.0;  ///< [s]
   std::int64_t num_particles = 0;
+
+  /// In a step, with lists of a skin. Of two that move by more each, lists may lack one that was
+  /// passed (passage.hpp) [m].
+  [[nodiscard]] double most_travel(double lists_skin) const {
+    return std::max(0.5 * lists_skin, quick_travel);
+  }
 
   /// Walls where the run begins. @pre the grid is made
   void set_walls(std::span<const WallSpec> specs) {
@@ -63,6 +72,8 @@ struct StepFrame {
   double gravity[3] = {};      ///< [m/s²]
   double local_damping = 0.0;  ///< of the stage (Stage)
   std::int64_t step = 0;
+  /// In the first step, known by its half kick, nothing has moved yet.
+  [[nodiscard]] bool has_moved(double dt) const { return kick >= dt; }
 };
 
 }  // namespace barchan

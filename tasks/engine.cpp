@@ -68,6 +68,7 @@ std::int64_t Simulation::EngineOf<Dim>::go_on(std::int64_t most) {
   if (keeper_) keep_checkpoints();
   update_stage();
   update_lists();
+  watch_plates();
   if (schedule_->is_check_due(step_))
     schedule_->begin_check(check_numbers(), {stop_is_requested(), wants_checkpoint()});
   schedule_->poll();
@@ -121,8 +122,8 @@ int Simulation::EngineOf<Dim>::steps_in_a_go(std::int64_t most) {
   return steps_until(schedule_->next_part(step_));
 }
 
-/// The earliest step in which a lane went wrong, and in that the lowest id of a fast particle, or
-/// of one that bore too much.
+/// The earliest step in which a lane went wrong, and in that the lowest ids of two that passed each
+/// other, or of a fast particle, or of one that bore too much.
 template <int Dim>
 void Simulation::EngineOf<Dim>::stop_if_wrong() {
   int steps = std::numeric_limits<int>::max();
@@ -133,6 +134,7 @@ void Simulation::EngineOf<Dim>::stop_if_wrong() {
   step_ += steps - 1;
   int fast = -1;
   Overload overload;
+  Passage passage;
   const auto id_in = [this](int l) {
     const Lane<Dim>& lane = strip_->lane(l);
     return lane.store().id[static_cast<std::size_t>(lane.first_fast_row())];
@@ -141,8 +143,10 @@ void Simulation::EngineOf<Dim>::stop_if_wrong() {
     const Lane<Dim>& lane = strip_->lane(l);
     if (!lane.must_stop() || graph_->steps_done(l) != steps) continue;
     overload.add(lane.overload());
+    passage.add(lane.passage());
     if (lane.is_fast() && (fast < 0 || id_in(l) < id_in(fast))) fast = l;
   }
+  if (passage.exists()) report_passage(passage);
   if (fast >= 0) report_fast(fast);
   report_overload(overload);
 }
@@ -175,8 +179,8 @@ void Simulation::EngineOf<Dim>::update_lists() {
   }
   if (const auto answer = schedule_->take_answer()) {
     judge(*answer);
-    if (answer->skin > 0.0) next_skin_ = answer->skin;
-    must_rebuild_ = must_rebuild_ || next_skin_ != world_.skin;
+    if (answer->skin > 0.0) tuned_skin_ = answer->skin;
+    must_rebuild_ = must_rebuild_ || next_skin() != world_.skin;
   }
   if (must_remove_) remove_outside();
   const bool is_test = options_.rebuild_every > 0 && step_ % options_.rebuild_every == 0;
@@ -184,8 +188,8 @@ void Simulation::EngineOf<Dim>::update_lists() {
   size_chunks();
   const double begin = now();
   const double walls_outran = outrun_share(wall_distance2(), world_.skin);
-  world_.skin = next_skin_;
-  schedule_->set_skin(next_skin_);
+  world_.skin = next_skin();
+  schedule_->set_skin(world_.skin);
   if (step_ >= options_.loss.step && communicator_.rank() + 1 == communicator_.size())
     strip_->lane(0).lose(std::exchange(options_.loss.what, Loss::Nothing));
   strip_->rebuild([this](const std::function<void(int)>& body) { graph_->for_each_lane(body); });
@@ -198,6 +202,12 @@ void Simulation::EngineOf<Dim>::update_lists() {
   rebuild_seconds_ += now() - begin;
   if (trace_)
     trace_->slice(Trace::Slice::Rebuild, 0, static_cast<std::int64_t>(1e9 * begin), now_ns());
+}
+
+/// Where particles may soon pass each other in a step, lists have all that might.
+template <int Dim>
+double Simulation::EngineOf<Dim>::next_skin() const {
+  return 2.0 * schedule_->speed() * world_.dt > world_.quick_travel ? scale_.skin : tuned_skin_;
 }
 
 template <int Dim>

@@ -106,6 +106,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   [[nodiscard]] int steps_in_a_go(std::int64_t most);
   void stop_if_wrong();
   void update_lists();
+  [[nodiscard]] double next_skin() const;
   void size_chunks();
   void press_plates(const StepFrame& frame);
   void kick_plates();
@@ -128,6 +129,8 @@ class Simulation::EngineOf final : public Simulation::Engine {
   void remove_outside();
   void watch_overlap();
   void watch_growth();
+  void watch_plates() const;
+  [[nodiscard]] double top_speed() const;
   [[nodiscard]] double wall_distance2() const;
   // engine_report.cpp
   void note(std::string text, bool is_warning = false);
@@ -136,6 +139,8 @@ class Simulation::EngineOf final : public Simulation::Engine {
   [[noreturn]] void report_outrun(const CheckNumbers& answer);
   [[noreturn]] void report_departures(const std::vector<Departure>& departures);
   [[noreturn]] void report_fast(int lane);
+  [[noreturn]] void report_passage(const Passage& passage) const;
+  [[nodiscard]] std::string remedy_for_travel(double travel) const;
   [[noreturn]] void report_overload(const Overload& overload);
   [[nodiscard]] std::string describe(const Suspect& suspect,
                                      const typename Lane<Dim>::Partners& touched) const;
@@ -150,7 +155,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   std::unique_ptr<StepGraph<Dim>> graph_;
   std::unique_ptr<RebuildSchedule> schedule_;
   std::optional<SkinTuner> tuner_;  ///< of rank 0
-  double next_skin_ = 0.0;          ///< that all ranks agreed on [m]
+  double tuned_skin_ = 0.0;         ///< that all ranks agreed on [m]
   std::unique_ptr<Plates> plates_;
   std::vector<WallSums> plate_sums_;  ///< of this rank, in a step
   std::vector<Vec3> walls_at_rebuild_;

@@ -116,6 +116,11 @@ template <int Dim>
 void Simulation::EngineOf<Dim>::restore_particles(const OpenCheckpoint& checkpoint) {
   const LoadedShares loaded =
       load_shares<Dim>(communicator_, checkpoint, model_, world_.grid, strip_->num_lanes());
+  for (const CheckpointShare& share : loaded.shares) {
+    for (const double radius : share.radii)
+      world_.quick_travel = std::min(world_.quick_travel, 0.5 * radius);
+  }
+  communicator_.allreduce_min(std::span(&world_.quick_travel, 1));
   strip_->restore(loaded.cuts, loaded.shares);
   check_restored(checkpoint);
   if (!communicator_.is_root()) return;
@@ -169,7 +174,7 @@ void Simulation::EngineOf<Dim>::restore(const OpenCheckpoint& checkpoint) {
     wall.work = s.walls[w].work;
   }
   left_ = {s.left_particles, {s.left_contacts, s.left_wall_contacts, s.left_bonds}};
-  schedule_->restore(step_, {s.look_step, s.look_outside, s.look_overlap},
+  schedule_->restore(step_, top_speed(), {s.look_step, s.look_outside, s.look_overlap},
                      communicator_.is_root() ? num_particles_ : 0);
 }
 

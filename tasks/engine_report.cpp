@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
 
@@ -16,6 +17,9 @@ namespace barchan {
 namespace {
 
 constexpr std::size_t kMostPartners = 6;  // that a message names
+
+/// What goes wrong in a step, in the order in which it is told.
+enum Kind : std::int64_t { Passed, Fast, Overloaded };
 
 std::string plural(std::int64_t count, const char* word) {
   return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
@@ -121,11 +125,54 @@ std::string Simulation::EngineOf<Dim>::describe_worst_overlap() {
 
 template <int Dim>
 void Simulation::EngineOf<Dim>::report_outrun(const CheckNumbers& answer) {
+  constexpr int kSteps = 2 * RebuildSchedule::kLag;  // until somebody knows of a new speed
   throw AgreedError(fmt::format(
       "at step {} a particle or wall had moved {:.3g} m since the lists were built, more than half "
-      "the skin of {:.3g} m (largest speed {:.3g} m/s): contacts may have been missed; {}; give a "
-      "larger search.skin or a smaller time.step",
-      step_, answer.distance, world_.skin, answer.speed, describe_fastest()));
+      "the skin of {:.3g} m (largest speed {:.3g} m/s): contacts may have been missed; {}; {}",
+      step_, answer.distance, world_.skin, answer.speed, describe_fastest(),
+      remedy_for_travel(std::max(answer.distance, kSteps * world_.dt * answer.speed))));
+}
+
+/// For a travel beyond half the skin, whether in one step or since lists were built. A skin wider
+/// than particles would not mend what goes wild.
+template <int Dim>
+std::string Simulation::EngineOf<Dim>::remedy_for_travel(double travel) const {
+  if (2.1 * travel > scale_.reach)
+    return "a run from step 0 with a smaller time.step, more damping or less overlap would help";
+  return fmt::format(
+      "search.skin = {:.2g} or more allows for it, also from a checkpoint before; so does a "
+      "smaller "
+      "time.step, from step 0 on",
+      2.1 * travel);
+}
+
+/// Every rank that sees the two says the same.
+template <int Dim>
+void Simulation::EngineOf<Dim>::report_passage(const Passage& p) const {
+  const auto name = [](const Suspect& s) {
+    return fmt::format("particle {} at {} with velocity {} and radius {:.4g} m", s.id,
+                       in_brackets(s.position, Dim), in_brackets(s.velocity, Dim), s.radius);
+  };
+  const bool is_wall = p.second.id == 0;
+  const double radius = is_wall ? p.first.radius : std::min(p.first.radius, p.second.radius);
+  const bool is_quick = p.travel > radius;
+  // So stiff that half the radius stops them, in steps of a fifth of the limit.
+  const double speed = p.travel / world_.dt;
+  const double stiffness = p.mass * speed * speed / (0.25 * radius * radius);
+  const double step = 0.4 * std::sqrt(p.mass / std::max(stiffness, p.stiffness));
+  throw StepError(
+      {step_, Passed, p.first.id, p.second.id},
+      fmt::format(
+          "at step {} {} has passed {}: they moved {:.3g} m against each other in one step, {} "
+          "{:.3g} m{}; a run from step 0 with {}time.step = {:.2g} would hold them apart",
+          step_, name(p.first),
+          is_wall ? "wall '" + model_.walls[static_cast<std::size_t>(p.wall)].name + "'"
+                  : name(p.second),
+          p.travel, is_quick ? "more than the smaller radius," : "with a radius of", radius,
+          is_quick ? "" : ", and their contact was too soft to stop them",
+          stiffness > p.stiffness ? fmt::format("normal_stiffness = {:.2g} and ", 1.1 * stiffness)
+                                  : "",
+          0.9 * step));
 }
 
 /// This rank alone knows: the others may be in the midst of the next step.
@@ -136,23 +183,25 @@ void Simulation::EngineOf<Dim>::report_fast(int l) {
   const Suspect s = lane.suspect(row);
   const double* was =
       lane.store().reference.data() + std::size_t{Dim} * static_cast<std::size_t>(row);
+  const double travel = world_.dt * std::sqrt(s.speed2);
   throw StepError(
-      step_,
-      fmt::format("in step {} {} (at {} when lists were last built): {}; a smaller time.step, more "
-                  "damping or less overlap at the start would help",
-                  step_, describe(s, lane.partners_before_step(row)), in_brackets(was, Dim),
+      {step_, Fast, s.id, 0},
+      fmt::format("in step {} {} (at {} when lists were last built): {}", step_,
+                  describe(s, lane.partners_before_step(row)), in_brackets(was, Dim),
                   s.speed2 < std::numeric_limits<double>::max()
-                      ? fmt::format("it moves farther in one step than half the skin of {:.3g} m, "
-                                    "so that contacts may be missed",
-                                    2.0 * world_.most_travel)
-                      : "its state is no longer finite"));
+                      ? fmt::format("it moves {:.3g} m in one step, more than half of the smallest "
+                                    "radius ({:.3g} m) and of the skin, so that contacts may be "
+                                    "missed; {}",
+                                    travel, 2.0 * world_.quick_travel, remedy_for_travel(travel))
+                      : "its state is no longer finite; a run from step 0 with a smaller "
+                        "time.step, more damping or less overlap would help"));
 }
 
 /// This rank alone knows, as with a fast particle.
 template <int Dim>
 void Simulation::EngineOf<Dim>::report_overload(const Overload& overload) {
   throw StepError(
-      step_,
+      {step_, Overloaded, overload.id, 0},
       fmt::format(
           "in step {} the contacts of particle {} press with {:.4g} N in all; sums of forces "
           "are exact up to {:.4g} N, which follows from limits.overlap_error; less overlap at "

@@ -6,6 +6,7 @@
 #include <barchan/core/generators/check_walls.hpp>
 #include <barchan/core/generators/make_particles.hpp>
 #include <barchan/tasks/engine.hpp>
+#include <barchan/tasks/forecast.hpp>
 #include <barchan/tasks/stability.hpp>
 #include <barchan/tasks/strip_plan.hpp>
 #include <barchan/tasks/threads.hpp>
@@ -19,13 +20,21 @@ Simulation::EngineOf<Dim>::EngineOf(const Model& model, const ParticleSet& parti
   check_particles(model_, particles);
   check_walls(model_, particles);
   check_time_step(model_, step_limits(model_, particles));
+  check_precision(model_, particles);
   num_particles_ = static_cast<std::int64_t>(particles.particles.size());
-  const double skin = model_.search.skin.value_or(default_skin(particles));
+  const double skin = model_.search.skin.value_or(default_skin(model_, particles));
   make_world({skin, search_reach(model_, particles, skin), num_particles_, !particles.bonds.empty(),
               barchan::force_grain(model_, particles)});
+  for (const ParticleData& p : particles.particles)
+    world_.quick_travel = std::min(world_.quick_travel, 0.5 * p.radius);
   make_strip();
   strip_->seed(particles);
   make_loop();
+  schedule_->begin(0, top_speed());
+  if (communicator_.is_root()) {
+    for (std::string& warning : precision_warnings(model_, particles))
+      note(std::move(warning), true);
+  }
   const std::string coarse = coarse_grain_warning(world_.grain, model_, particles);
   if (!coarse.empty() && communicator_.is_root()) note(coarse, true);
 }
@@ -45,7 +54,7 @@ void Simulation::EngineOf<Dim>::make_loop() {
   graph_ = std::make_unique<StepGraph<Dim>>(*strip_, options_);
   schedule_ = std::make_unique<RebuildSchedule>(communicator_, world_.skin, world_.dt,
                                                 model_.gravity.norm(), kEventSteps);
-  next_skin_ = world_.skin;
+  tuned_skin_ = world_.skin;
   if (communicator_.is_root() && options_.tune_skin && !model_.search.skin)
     tuner_.emplace(world_.skin);
   plates_ = std::make_unique<Plates>(communicator_, world_.wall_specs, world_.dt);

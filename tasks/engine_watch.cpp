@@ -44,12 +44,20 @@ Travel Simulation::EngineOf<Dim>::travel() const {
   }
   for (std::size_t w = 0; w < world_.walls.size(); ++w) {
     const WallState& wall = world_.walls[w];
+    if (!(wall.velocity.squaredNorm() <= most.speed2)) most.speed2 = wall.velocity.squaredNorm();
     if (!wall.is_active) continue;
     const double distance2 = (wall.point - walls_at_rebuild_[w]).squaredNorm();
     if (!(distance2 <= most.distance2)) most.distance2 = distance2;
-    if (!(wall.velocity.squaredNorm() <= most.speed2)) most.speed2 = wall.velocity.squaredNorm();
   }
   return most;
+}
+
+/// Of all ranks. Collective.
+template <int Dim>
+double Simulation::EngineOf<Dim>::top_speed() const {
+  double speed = std::sqrt(travel().speed2);
+  communicator_.allreduce_max(std::span(&speed, 1));
+  return speed;
 }
 
 template <int Dim>
@@ -187,6 +195,22 @@ void Simulation::EngineOf<Dim>::watch_overlap() {
   graph_->for_each_lane(
       [&](int l) { shares[static_cast<std::size_t>(l)] = strip_->lane(l).worst_overlap().share; });
   for (const double share : shares) overlap_ = std::max(overlap_, share);
+}
+
+/// Plates have no thickness, and given velocities no limit.
+template <int Dim>
+void Simulation::EngineOf<Dim>::watch_plates() const {
+  for (std::size_t w = 0; w < world_.walls.size(); ++w) {
+    const WallState& wall = world_.walls[w];
+    const double travel = world_.dt * wall.velocity.norm();
+    if (!wall.is_active || model_.walls[w].kind != WallKind::Plate ||
+        travel <= world_.most_travel(world_.skin))
+      continue;
+    throw AgreedError(fmt::format(
+        "at step {} wall '{}' moves {:.3g} m in one step, more than half of the smallest radius "
+        "({:.3g} m), so that it may pass particles unseen; {}",
+        step_, model_.walls[w].name, travel, 2.0 * world_.quick_travel, remedy_for_travel(travel)));
+  }
 }
 
 /// After a rebuild. Buffers grow by themselves; here it is only told, once they have grown by a

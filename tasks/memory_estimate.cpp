@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <barchan/core/lane.hpp>
-#include <barchan/tasks/stability.hpp>
+#include <barchan/tasks/forecast.hpp>
 #include <barchan/tasks/strip_plan.hpp>
 #include <barchan/tasks/world_setup.hpp>
 
@@ -25,7 +25,7 @@ std::vector<char> bonded_ones(const ParticleSet& set) {
 /// One lane takes all slabs, and has its lists made.
 template <int Dim>
 std::size_t bytes_of_lane(const Model& model, const ParticleSet& set) {
-  const double skin = model.search.skin.value_or(default_skin(set));
+  const double skin = model.search.skin.value_or(default_skin(model, set));
   World<Dim> world;
   set_up(world, model,
          {skin, search_reach(model, set, skin), static_cast<std::int64_t>(set.particles.size()),

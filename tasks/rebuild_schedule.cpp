@@ -1,6 +1,7 @@
 #include <barchan/tasks/rebuild_schedule.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 #include <barchan/comm/clock.hpp>
 
@@ -23,25 +24,31 @@ RebuildSchedule::RebuildSchedule(const Communicator& communicator, double skin, 
       skin_(skin),
       dt_(dt),
       gravity_(gravity),
-      look_every_(look_every) {}
+      look_every_(look_every),
+      lists_end_(end_of_lists(0, 0.0, 0.0, 0)) {}
 
-std::int64_t RebuildSchedule::next_check(std::int64_t check_step, double distance, double speed,
-                                         int last) const {
-  const std::int64_t answer_step = check_step + kLag;
-  const auto is_safe = [&](std::int64_t check) {
-    const double t = static_cast<double>(2 * kLag + check - answer_step) * dt_;
-    return distance + 2.0 * speed * t + gravity_ * t * t <= 0.5 * skin_;
-  };
-  const std::int64_t first = check_step + kCheckEvery;
-  std::int64_t check =
-      std::min(check_from(answer_step + std::max(2 * last, 1)), next_look(check_step + 1));
-  while (check > first && !is_safe(check)) check -= kCheckEvery;
-  return is_safe(check) ? check : -1;
+std::int64_t RebuildSchedule::end_of_lists(std::int64_t from, double distance, double speed,
+                                           std::int64_t speed_step) const {
+  constexpr double kMost = 1e9;
+  const double room = 0.5 * skin_ - distance, a = gravity_ * dt_ * dt_;
+  const double b = 2.0 * speed * dt_ + a * static_cast<double>(from - speed_step);
+  const double n = 2.0 * room / (b + std::sqrt(b * b + 4.0 * a * room));
+  return from + 1 + (n > 0.0 ? static_cast<std::int64_t>(std::min(n, kMost)) : 0);  // NaN: none
 }
 
-std::int64_t RebuildSchedule::next_check(const CheckNumbers& answer) const {
-  if (is_check_over_) return check_step_ + kCheckEvery;
-  return next_check(check_step_, answer.distance, answer.speed, interval_);
+std::int64_t RebuildSchedule::check_in(std::int64_t first, std::int64_t wanted,
+                                       std::int64_t lists_end) const {
+  std::int64_t check = std::min(check_from(wanted), next_look(first));
+  while (check > first && check + kLag > lists_end) check -= kCheckEvery;
+  return check;
+}
+
+RebuildSchedule::Outlook RebuildSchedule::outlook(const CheckNumbers& answer) const {
+  const std::int64_t answer_step = check_step_ + kLag;
+  const std::int64_t end =
+      is_check_over_ ? end_of_lists(lists_step_, 0.0, answer.speed, check_step_)
+                     : end_of_lists(check_step_, answer.distance, answer.speed, check_step_);
+  return {end, check_in(answer_step, answer_step + std::max(2 * interval_, 1), end)};
 }
 
 void RebuildSchedule::begin_check(const CheckNumbers& mine, Wishes wishes) {
@@ -79,33 +86,43 @@ CheckNumbers RebuildSchedule::numbers() const {
 std::optional<RebuildSchedule::Foresight> RebuildSchedule::foresee() {
   wait();
   const CheckNumbers answer = numbers();
-  const std::int64_t next = next_check(answer);
+  const Outlook next = outlook(answer);
   const bool has_wish = reduction_.maxima()[4] > 0.0 || reduction_.maxima()[5] > 0.0 ||
                         (answer.skin > 0.0 && answer.skin != skin_);
-  if (next < 0 || has_wish) return std::nullopt;
-  return Foresight{answer, next};
+  if (next.lists_end < next.next_check + kLag || has_wish) return std::nullopt;
+  return Foresight{answer, next.next_check};
 }
 
 bool RebuildSchedule::must_rebuild(std::int64_t step) {
-  if (step != check_step_ + kLag) return false;
+  if (step != check_step_ + kLag) return step >= lists_end_;
   wait();
   stop_agreed_ = reduction_.maxima()[4] > 0.0;
   save_agreed_ = reduction_.maxima()[5] > 0.0;
   answer_ = numbers();
-  const std::int64_t next = next_check(*answer_);
-  if (next < 0) return true;
-  interval_ = static_cast<int>(next - step);
-  check_step_ = next;
-  return false;
+  const Outlook next = outlook(*answer_);
+  speed_ = answer_->speed;
+  speed_step_ = check_step_;
+  lists_end_ = next.lists_end;
+  interval_ = static_cast<int>(next.next_check - step);
+  check_step_ = next.next_check;
+  return step >= lists_end_;
 }
 
 void RebuildSchedule::rebuilt(std::int64_t step) {
+  lists_step_ = step;
+  lists_end_ = end_of_lists(step, 0.0, speed_, speed_step_);
   if (check_step_ < step && check_step_ + kLag > step) {
     is_check_over_ = true;
     return;
   }
   interval_ /= 2;
-  check_step_ = std::min(check_from(step + interval_), next_look(step));
+  check_step_ = check_in(check_from(step), step + interval_, lists_end_);
+}
+
+void RebuildSchedule::begin(std::int64_t step, double speed) {
+  speed_ = speed;
+  speed_step_ = step;
+  rebuilt(step);
 }
 
 RebuildSchedule::PendingLook RebuildSchedule::pending_look(std::int64_t step) {
@@ -115,12 +132,12 @@ RebuildSchedule::PendingLook RebuildSchedule::pending_look(std::int64_t step) {
   return {check_step_, answer.outside, answer.overlap};
 }
 
-void RebuildSchedule::restore(std::int64_t step, const PendingLook& look,
+void RebuildSchedule::restore(std::int64_t step, double speed, const PendingLook& look,
                               std::int64_t num_particles) {
-  rebuilt(step);
+  begin(step, speed);
   if (look.step < 0) return;
   check_step_ = look.step;
-  begin_check({0.0, 0.0, look.outside, look.overlap, num_particles, {}, 0.0}, {});
+  begin_check({0.0, speed, look.outside, look.overlap, num_particles, {}, 0.0}, {});
   is_check_over_ = true;
 }
 

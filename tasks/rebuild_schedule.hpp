@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <utility>
@@ -22,18 +23,22 @@ struct CheckNumbers {
 
 /// Decides when lists are rebuilt, alike on all ranks. No bit of the state depends on it.
 ///
-/// Checks lie on multiples of kCheckEvery. A check at step s takes the exact global maximum of
-/// displacement d since the last rebuild, and of speed v. The reduction has until step s + kLag to
-/// come in, behind the work of kLag steps. Then, with t(n) = (2·kLag + n)·dt,
+/// Lists serve from the step that they are made for, whatever moves: so they may be made anew in
+/// every step, and a step that is stable runs on however fast particles are. They serve n steps
+/// more, for the largest n that satisfies
 ///
-///     d + 2·v·t(n) + g·t(n)² <= skin/2
+///     d + (2·v + g·t)·n·dt <= skin/2
 ///
-/// The next check is n steps later, for the largest n that satisfies this and is at most twice the
-/// last n. Where none does, lists are rebuilt now.
+/// where d is the largest displacement so far, 0 for new lists; v the largest speed as last known;
+/// t the time since then until the n-th step. So speeds may double, beside what gravity adds.
 ///
-/// t(n) reaches to the answer of the next check, and speeds may double until then. The engine
-/// verifies the bound when it takes the answer: d > skin/2 means that a contact may have been
-/// missed, which is an error, never silence.
+/// A check at step s takes the exact global maxima of d and v. The reduction has until step
+/// s + kLag to come in, behind the work of kLag steps; the rule with its numbers says anew when
+/// lists end. Checks lie on multiples of kCheckEvery. The next one comes as late as its answer may,
+/// before lists end, and at most after twice the time since the last one.
+///
+/// The engine verifies the bound when it takes the answer: d > skin/2 means that a contact may have
+/// been missed, which is an error, never silence.
 ///
 /// Every multiple of `look_every` has a check, whatever the lists do: a look. What it tells of
 /// particles outside the domain and of overlaps is part of what the run does, so it comes at fixed
@@ -66,16 +71,17 @@ class RebuildSchedule {
   /// Whether the check of step `step` is due, so that travel() must be called. Before the step.
   [[nodiscard]] bool is_check_due(std::int64_t step) const { return step == check_step_; }
   [[nodiscard]] bool is_look(std::int64_t step) const { return step % look_every_ == 0; }
-  /// The first step after `step` before which a check is due, or the answer of one.
+  /// The first step after `step` before which a check is due, or the answer of one, or new lists.
   [[nodiscard]] std::int64_t next_part(std::int64_t step) const {
-    return step < check_step_ ? check_step_ : check_step_ + kLag;
+    return std::min(step < check_step_ ? check_step_ : check_step_ + kLag, lists_end_);
   }
+  [[nodiscard]] double speed() const { return speed_; }  ///< the largest, as last known [m/s]
   void begin_check(const CheckNumbers& mine, Wishes wishes);
 
   /// The decision for `step`, before it; waits for the reduction when its time has come.
   [[nodiscard]] bool must_rebuild(std::int64_t step);
   /// On a lone rank: the answer of the check just begun, kLag steps early, and the step of the next
-  /// check; none, if lists will be rebuilt or some rank had a wish. Changes nothing.
+  /// check; none, if lists end before its answer or some rank had a wish. Changes nothing.
   [[nodiscard]] std::optional<Foresight> foresee();
   /// What the check found that the last must_rebuild() had the answer of; once.
   [[nodiscard]] std::optional<CheckNumbers> take_answer() {
@@ -90,20 +96,29 @@ class RebuildSchedule {
   void set_skin(double skin) { skin_ = skin; }  ///< of the lists that are made next [m]
   /// Before `step` lists were made anew.
   void rebuilt(std::int64_t step);
+  /// The first lists were made before `step`. @param speed  the largest of all ranks [m/s]
+  void begin(std::int64_t step, double speed);
 
   /// Before `step`. Waits for the look's answer.
   [[nodiscard]] PendingLook pending_look(std::int64_t step);
-  /// Goes on before `step` with new lists. Collective; @pre nothing is in flight
-  void restore(std::int64_t step, const PendingLook& look, std::int64_t num_particles);
+  /// As begin(). Collective; @pre nothing is in flight
+  void restore(std::int64_t step, double speed, const PendingLook& look,
+               std::int64_t num_particles);
 
-  /// The rule above, for a check at `check_step`. @return step of the next check; -1: rebuild
-  [[nodiscard]] std::int64_t next_check(std::int64_t check_step, double distance, double speed,
-                                        int last) const;
+  /// The rule above, with d and v as of step `from`. @return the first step without lists
+  [[nodiscard]] std::int64_t end_of_lists(std::int64_t from, double distance, double speed,
+                                          std::int64_t speed_step) const;
 
  private:
+  struct Outlook {
+    std::int64_t lists_end = 0, next_check = 0;
+  };
   void wait();
   [[nodiscard]] CheckNumbers numbers() const;  ///< @pre the reduction is complete
-  [[nodiscard]] std::int64_t next_check(const CheckNumbers& answer) const;
+  [[nodiscard]] Outlook outlook(const CheckNumbers& answer) const;
+  /// From `first` on about `wanted`, with its answer before lists end where that can be.
+  [[nodiscard]] std::int64_t check_in(std::int64_t first, std::int64_t wanted,
+                                      std::int64_t lists_end) const;
   [[nodiscard]] std::int64_t next_look(std::int64_t step) const {  ///< `step` itself, or later
     return (step + look_every_ - 1) / look_every_ * look_every_;
   }
@@ -112,6 +127,9 @@ class RebuildSchedule {
   std::optional<CheckNumbers> answer_;
   double skin_, dt_, gravity_;
   int look_every_;
+  double speed_ = 0.0;                       ///< the largest, as last known [m/s], and
+  std::int64_t speed_step_ = 0;              ///< of which step
+  std::int64_t lists_step_ = 0, lists_end_;  ///< steps that lists serve: [begin, end)
   std::int64_t check_step_ = 0;
   int interval_ = 0;            ///< from the last answer to the check after it
   bool is_check_over_ = false;  ///< lists were made anew after it: only what it says of the state

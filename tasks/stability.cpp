@@ -19,7 +19,6 @@ namespace barchan {
 namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr double kSkinShare = 0.3;
 
 double stable_step(double m, double k, double c) {
   if (k > 0.0) return (std::sqrt(c * c + 4.0 * m * k) - c) / k;
@@ -264,14 +263,6 @@ void check_time_step(const Model& model, std::span<const StepLimit> limits) {
                   limits.front().step, limits.front().what),
       fmt::format("use at most {:.3g} s, better {:.2g} s, or set time.allow_unstable = true",
                   rounded_down(limits.front().step), kAdvisedShare * limits.front().step));
-}
-
-double default_skin(const ParticleSet& particles) {
-  double sum = 0.0;
-  for (const ParticleData& p : particles.particles) sum += p.radius;
-  return particles.particles.empty()
-             ? 0.0
-             : kSkinShare * sum / static_cast<double>(particles.particles.size());
 }
 
 }  // namespace barchan

@@ -40,7 +40,4 @@ inline constexpr double kAdvisedShare = 0.2;
 /// Errors: InputError with the limit and the largest step that would do.
 void check_time_step(const Model& model, std::span<const StepLimit> limits);
 
-/// Default skin: a fixed share of the mean radius (docs/measurements/performance.md).
-double default_skin(const ParticleSet& particles);
-
 }  // namespace barchan

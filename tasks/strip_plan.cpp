@@ -10,7 +10,7 @@
 #include <barchan/core/error.hpp>
 #include <barchan/core/generators/close_pairs.hpp>
 #include <barchan/core/grid.hpp>
-#include <barchan/tasks/stability.hpp>
+#include <barchan/tasks/forecast.hpp>
 
 namespace barchan {
 namespace {
@@ -37,7 +37,8 @@ double longest_bond(const Model& model, const ParticleSet& set) {
 
 template <int Dim>
 StripPlan plan_for(const Model& model, const ParticleSet& set) {
-  const double reach = search_reach(model, set, model.search.skin.value_or(default_skin(set)));
+  const double reach =
+      search_reach(model, set, model.search.skin.value_or(default_skin(model, set)));
   const Grid<Dim> grid(model.domain, reach, static_cast<std::int64_t>(set.particles.size()));
   StripPlan plan;
   plan.axis = grid.axis(0);

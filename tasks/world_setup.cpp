@@ -5,7 +5,6 @@ namespace barchan {
 template <int Dim>
 void set_up(World<Dim>& world, const Model& model, const WorldScale& scale, VectorWidth width) {
   world.skin = scale.skin;
-  world.most_travel = 0.5 * scale.skin;
   world.dt = model.time.step;
   world.search = model.search.kind;
   world.num_particles = scale.num_particles;

@@ -9,7 +9,7 @@
 
 #include <barchan/core/deck/deck.hpp>
 #include <barchan/core/generators/make_particles.hpp>
-#include <barchan/tasks/stability.hpp>
+#include <barchan/tasks/forecast.hpp>
 #include <barchan/tasks/strip_plan.hpp>
 
 namespace barchan::micro {
@@ -116,8 +116,7 @@ std::unique_ptr<Sample<Dim>> make_sample(std::int64_t count, VectorWidth width, 
   const ParticleSet& set = packing<Dim>(deck, count);
   auto sample = std::make_unique<Sample<Dim>>();
   World<Dim>& world = sample->world;
-  world.skin = default_skin(set);
-  world.most_travel = 0.5 * world.skin;
+  world.skin = default_skin(deck.model, set);
   world.dt = deck.model.time.step;
   world.num_particles = count;
   world.grid = Grid<Dim>(deck.model.domain, search_reach(deck.model, set, world.skin), count);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <barchan/tasks/results/agree.hpp>
+#include <barchan/tasks/results/check_sums.hpp>
 #include <barchan/tasks/results/departure_table.hpp>
 #include <barchan/tasks/results/final_picture.hpp>
 
@@ -49,9 +50,15 @@ RunResults::RunResults(Simulation& simulation, RunFolder folder, const ParticleS
     write();
     return;
   }
-  series_->append(simulation);
-  last_row_ = simulation.step();
+  append_row();
   snapshots_.write(simulation);
+}
+
+/// What cannot be told in numbers is still a row.
+void RunResults::append_row() {
+  const Measures measures = series_->append(simulation_);
+  last_row_ = simulation_.step();
+  check_sums(simulation_, measures);
 }
 
 std::int64_t RunResults::next_step() const {
@@ -83,18 +90,14 @@ void RunResults::write_failed() {
 void RunResults::write() {
   const std::int64_t step = simulation_.step();
   log_->take_notes(simulation_);
-  if (step % series_every_ == 0 && step != last_row_) {
-    series_->append(simulation_);
-    last_row_ = step;
-  }
+  if (step % series_every_ == 0 && step != last_row_) append_row();
   if (step % snapshots_every_ == 0 && step != snapshots_.last_step()) snapshots_.write(simulation_);
 }
 
 RunSummary RunResults::finish(bool interrupted) {
   const std::int64_t step = simulation_.step();
   log_->take_notes(simulation_);
-  if (step != last_row_) series_->append(simulation_);
-  last_row_ = step;
+  if (step != last_row_) append_row();
   if (step != snapshots_.last_step()) snapshots_.write(simulation_);
   if (simulation_.model().output.picture)
     write_final_picture(simulation_, folder_.file("picture.png"));

@@ -52,6 +52,7 @@ class RunResults {
 
  private:
   void on_rank_zero(const std::function<void()>& work);
+  void append_row();
   void list_departures();
 
   Simulation& simulation_;

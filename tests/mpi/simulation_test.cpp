@@ -14,7 +14,7 @@
 #include <fmt/ranges.h>
 
 #include <barchan/core/kernels/kernel_set.hpp>
-#include <barchan/tasks/stability.hpp>
+#include <barchan/tasks/forecast.hpp>
 
 #include "running.hpp"
 #include "scenarios.hpp"
@@ -129,7 +129,7 @@ void expect_same_bits_with_any_lists(const Scenario& s, const Outcome& reference
     RunOptions o = options[(turn + 3 * q) % options.size()];
     o.rebuild_every = kEvery[(turn + q) % kEvery.size()];
     Scenario other = s;
-    const double skin = s.model.search.skin.value_or(default_skin(s.set));
+    const double skin = s.model.search.skin.value_or(default_skin(s.model, s.set));
     other.model.search.skin = kFactors[(turn / 2 + 2 * q) % kFactors.size()] * skin;
     std::shuffle(other.set.particles.begin(), other.set.particles.end(), std::mt19937_64(turn + q));
     const Outcome got = outcome_of(other, MPI_COMM_WORLD, o, 2);

@@ -41,7 +41,6 @@ World<Dim> world_of(const Domain& domain, double cutoff, double skin, std::int64
   w.grain.size = 0x1p-30;
   w.kernels = make_kernels(Dim, VectorWidth::Scalar, w.laws, has_bonds, w.grid.box());
   w.skin = skin;
-  w.most_travel = 0.5 * skin;
   w.dt = 1e-4;
   w.num_particles = num_particles;
   return w;

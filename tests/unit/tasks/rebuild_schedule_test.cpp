@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -70,20 +71,46 @@ TEST(RebuildSchedule, NoStepIsComputedBeyondHalfTheSkinWhileSpeedsAtMostDoubleBe
   }
 }
 
-TEST(RebuildSchedule, ItsRuleBoundsTheDistanceAtTheNextAnswer) {
-  const RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 9.81, kLook);
-  for (std::int64_t step = 0; step < kLook; step += RebuildSchedule::kCheckEvery) {
-    for (int last = 0; last <= kLook; ++last) {
-      for (const double speed : {0.0, 0.01, 0.1, 0.5, 1.0}) {
-        for (const double distance : {0.0, 0.3 * kSkin, 0.49 * kSkin}) {
-          const std::int64_t next = schedule.next_check(step, distance, speed, last);
-          if (next < 0) continue;
-          ASSERT_GT(next, step);
-          ASSERT_LE(next, kLook) << "a look is left out";
-          ASSERT_EQ(next % RebuildSchedule::kCheckEvery, 0);
-          const double t = static_cast<double>(RebuildSchedule::kLag + next - step) * kDt;
-          EXPECT_LE(distance + 2.0 * speed * t + 9.81 * t * t, 0.5 * kSkin);
-        }
+TEST(RebuildSchedule, NoStepIsComputedBeyondHalfTheSkinHoweverFastParticlesAre) {
+  for (const double v : {1.0, 3.0, 9.0, 50.0, 1000.0}) {
+    int rebuilds = 0;
+    const double most = farthest({0.0, v}, 0.0, 150, rebuilds);
+    EXPECT_LE(most, 0.5 * kSkin) << "speed " << v;
+    EXPECT_GT(rebuilds, 10);
+  }
+}
+
+TEST(RebuildSchedule, FastParticlesHaveNewListsInEveryStepAndSlowOnesAgainTheirOldOnes) {
+  RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0, kLook);
+  schedule.begin(0, 50.0);
+  std::array<int, 2> rebuilds{};
+  for (std::int64_t step = 0; step < 200; ++step) {
+    const bool is_fast = step < 100;
+    if (schedule.must_rebuild(step)) {
+      schedule.rebuilt(step);
+      ++rebuilds[is_fast ? 0 : 1];
+    }
+    if (schedule.is_check_due(step)) schedule.begin_check(travel_of(0.0, is_fast ? 50.0 : 0.0), {});
+  }
+  EXPECT_EQ(rebuilds[0], 99);  // all but step 0, whose lists are those of the start
+  EXPECT_LE(rebuilds[1], RebuildSchedule::kLag + RebuildSchedule::kCheckEvery);
+}
+
+TEST(RebuildSchedule, ListsServeAsLongAsTheRuleSays) {
+  constexpr double kGravity = 9.81;
+  const RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, kGravity, kLook);
+  for (const std::int64_t heard : {100, 97}) {
+    for (const double speed : {0.0, 0.01, 0.1, 0.5, 4.0, 20.0}) {
+      for (const double distance : {0.0, 0.3 * kSkin, 0.49 * kSkin}) {
+        const auto travel = [&](double n) {
+          const double t = (static_cast<double>(100 - heard) + n) * kDt;
+          return distance + (2.0 * speed + kGravity * t) * n * kDt;
+        };
+        const auto n =
+            static_cast<double>(schedule.end_of_lists(100, distance, speed, heard) - 101);
+        ASSERT_GE(n, 0.0);
+        EXPECT_LE(travel(n), 0.5 * kSkin);
+        EXPECT_GT(travel(n + 1.0), 0.5 * kSkin);
       }
     }
   }
@@ -115,7 +142,7 @@ TEST(RebuildSchedule, ALookIsAnsweredThoughListsAreMadeAnewMeanwhile) {
 
 TEST(RebuildSchedule, GoesOnFromACheckpointWithTheLookThatWasPending) {
   RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0, kLook);
-  schedule.restore(17, {16, 5, 0.5}, 100);
+  schedule.restore(17, 0.0, {16, 5, 0.5}, 100);
 
   EXPECT_FALSE(schedule.must_rebuild(17));
   EXPECT_FALSE(schedule.must_rebuild(18));
@@ -131,25 +158,23 @@ TEST(RebuildSchedule, ForeseesOnALoneRankWhatItWillDecide) {
   RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0, kLook);
   int rebuilds = 0, goes = 0;
   for (std::int64_t step = 0; step < 2000; ++step) {
+    if (schedule.must_rebuild(step)) {
+      schedule.rebuilt(step);
+      ++rebuilds;
+    }
     if (!schedule.is_check_due(step)) continue;
     const double way = kSkin * static_cast<double>(step * 7919 % 1000) / 1800.0;
     schedule.begin_check(travel_of(way, 0.2), {});
     const auto foreseen = schedule.foresee();
-    const std::int64_t answer_at = schedule.next_part(step);
-    ASSERT_EQ(answer_at, step + RebuildSchedule::kLag);
+    if (!foreseen) continue;
 
-    const bool must_rebuild = schedule.must_rebuild(answer_at);
+    ASSERT_FALSE(schedule.must_rebuild(step + RebuildSchedule::kLag));
 
-    ASSERT_EQ(foreseen.has_value(), !must_rebuild);
-    if (must_rebuild) {
-      schedule.rebuilt(answer_at);
-      ++rebuilds;
-    } else {
-      ASSERT_EQ(foreseen->answer.distance, way);
-      ASSERT_TRUE(schedule.is_check_due(foreseen->next_check));
-      ASSERT_EQ(schedule.next_part(answer_at - 1), foreseen->next_check);
-      ++goes;
-    }
+    ASSERT_EQ(foreseen->answer.distance, way);
+    ASSERT_TRUE(schedule.is_check_due(foreseen->next_check));
+    ASSERT_EQ(schedule.next_part(step + 1), foreseen->next_check) << "lists last until then";
+    step = foreseen->next_check - 1;
+    ++goes;
   }
   EXPECT_GT(rebuilds, 10);
   EXPECT_GT(goes, 10);

@@ -164,10 +164,5 @@ TEST(CheckTimeStep, LetsAnUnstableStepPassWhereTheDeckAllowsIt) {
   EXPECT_NO_THROW(check_time_step(model, limits));
 }
 
-TEST(DefaultSkin, IsAShareOfTheMeanRadius) {
-  EXPECT_NEAR(default_skin({{disk(1, 1, 0.04), disk(2, 2, 0.06)}, {}}) / 0.05,
-              default_skin({{disk(1, 1, 1.0)}, {}}), 1e-12);
-}
-
 }  // namespace
 }  // namespace barchan

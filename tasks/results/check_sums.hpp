@@ -1,0 +1,12 @@
+#pragma once
+
+#include <barchan/core/measures.hpp>
+#include <barchan/tasks/simulation.hpp>
+
+namespace barchan {
+
+/// Holds energies, momentum, and forces and work of walls against what exact sums can hold, 2e90.
+/// @param measures  just measured. Errors: AgreedError, with what is too large, alike on every rank
+void check_sums(const Simulation& simulation, const Measures& measures);
+
+}  // namespace barchan

@@ -1,0 +1,186 @@
+"""Particles that are too fast for their step or for the lists, and decks too far from the origin: a contact, an error that names
+both, in the same words on any number of ranks, and remedies that work."""
+import json
+import re
+
+from _faults import digest_of, expect_failure
+from _helper import expect, finish, fresh, messages, run, write
+
+SHOT = """
+dimension = 2
+[domain]
+lo = [0.0, 0.0]
+hi = [3.0, 3.0]
+[time]
+step = 1e-4
+steps = 300
+[[material]]
+name = "m"
+density = 1000.0
+normal_stiffness = 1e3
+[[particles]]
+kind = "list"
+material = "m"
+particle = [ { position = [0.3033, 1.5], radius = 0.001, velocity = [60.0, 0.0] }, { position = [2.7, 2.7], radius = 0.2 } ]
+[[wall]]
+name = "shield"
+kind = "plate"
+point = [1.0, 1.5]
+normal = [-1.0, 0.0]
+width = 1.0
+material = "m"
+[output]
+picture = false
+"""
+
+FALL = """
+dimension = 2
+gravity = [0.0, -9.81]
+[domain]
+lo = [0.0, -0.1]
+hi = [1.0, 3.0]
+outside = "delete"
+[time]
+step = 1e-3
+steps = 1000
+[[material]]
+name = "m"
+density = 1000.0
+normal_stiffness = 1e5
+restitution = 0.5
+[[particles]]
+kind = "lattice"
+region = { lo = [0.0, 0.0], hi = [1.0, 0.4] }
+radius = 0.05
+material = "m"
+[[particles]]
+kind = "list"
+material = "m"
+particle = [ { position = [0.5, 2.5], radius = 0.05 } ]
+[[wall]]
+name = "floor"
+point = [0.0, 0.0]
+normal = [0.0, 1.0]
+material = "m"
+[checkpoint]
+every_steps = 100
+[output]
+picture = false
+"""
+
+
+def changed(deck, *pairs):
+    for old, new in pairs:
+        expect(old in deck, f"no '{old}' in the deck")
+        deck = deck.replace(old, new)
+    return deck
+
+
+def errors_of(done):
+    return [line for line in messages(done) if "warning" not in line]
+
+
+def expect_same_words(name, deck, *parts, ways=((1, 1), (1, 2), (3, 1))):
+    write("case.toml", deck)
+    said = set()
+    for ranks, threads in ways:
+        fresh("case.out")
+        done = run("run", "case.toml", "--quiet", "--threads", threads, ranks=ranks)
+        expect_failure(f"{name}, {ranks} ranks", done, *parts)
+        said.add(str(errors_of(done)))
+    expect(len(said) == 1, f"{name}: not the same words: {said}")
+    return said.pop()
+
+
+def check_shots():
+    told = expect_same_words("shot at a plate", SHOT, "particle 1 at", "has passed wall 'shield'")
+    second = "velocity = [60.0, 0.0] }, { position = [2.7, 1.5], radius = 0.001, velocity = [-30.0, 0.0] }"
+    pair = changed(SHOT[:SHOT.index("[[wall]]")], ("velocity = [60.0, 0.0] }", second))
+    expect_same_words("shots at each other", pair, "particle 1 at", "has passed particle 2 at")
+    around = changed(pair, ("hi = [3.0, 3.0]", 'hi = [3.0, 3.0]\nperiodic = ["x"]'), ("[60.0", "[-60.0"), ("[-30.0", "[30.0"))
+    expect_same_words("shots around the box", around, "particle 1 at", "has passed particle 2 at")
+
+    remedy = dict(re.findall(r"(normal_stiffness|time\.step) = ([0-9.e+-]+)", told))
+    step = float(remedy["time.step"])
+    write("held.toml", changed(SHOT, ("normal_stiffness = 1e3", f"normal_stiffness = {float(remedy['normal_stiffness'])}"),
+                               ("step = 1e-4", f"step = {step}"), ("steps = 300", f"steps = {int(0.02 / step)}")))
+    fresh("held.out")
+    done = run("run", "held.toml", "--quiet")
+    expect(done.returncode == 0, f"the remedy does not hold them apart: {done.stderr}")
+    with open("held.out/series.csv", encoding="utf-8") as file:
+        rows = [line.split(",") for line in file.read().splitlines()]
+    expect(float(rows[-1][rows[0].index("momentum_x")]) < 0.0, f"no rebound: {rows[-1]}")
+
+
+def check_warnings():
+    write("case.toml", SHOT)
+    done = run("check", "case.toml")
+    expect(done.returncode == 0 and "Warning: particle 1 starts at 60 m/s" in done.stdout, f"check of a shot: {done.stdout}")
+    step = re.search(r"time\.step = ([0-9.e+-]+) or less", done.stdout)
+    done = run("check", "case.toml", "--set", f"time.step={step.group(1)}")
+    expect("particle 1 starts at" not in done.stdout, f"check with the step it names: {done.stdout}")
+    write("case.toml", changed(FALL, ("hi = [1.0, 3.0]", "hi = [1.0, 300.0]"), ("[0.5, 2.5]", "[0.5, 299.0]")))
+    done = run("check", "case.toml")
+    expect("Warning: particle 41, if it falls" in done.stdout, f"check of a fall: {done.stdout}")
+
+
+def check_fall():
+    """The lists of a default skin last for a step or two when the ball arrives."""
+    write("fall.toml", FALL)
+    digests = set()
+    for ranks in (1, 3):
+        fresh("fall.out")
+        done = run("run", "fall.toml", "--quiet", ranks=ranks)
+        expect(done.returncode == 0, f"fall on {ranks} ranks: {done.stderr}")
+        digests.add(digest_of("fall.out"))
+    for steps in (620, 641):
+        fresh("fall.out")
+        run("run", "fall.toml", "--quiet", "--steps", steps)
+        done = run("run", "fall.toml", "--quiet", "--restart", "auto", ranks=2)
+        expect(done.returncode == 0, f"fall from step {steps}: {done.stderr}")
+        digests.add(digest_of("fall.out"))
+    expect(len(digests) == 1, f"fall: {digests}")
+
+
+def check_too_fast():
+    """What no list of the default skin may miss: a wider one is a remedy."""
+    deck = changed(FALL, ("radius = 0.05 } ]", "radius = 0.05, velocity = [0.0, -30.0] } ]"))
+    told = expect_same_words("too fast", deck, "particle 41 at", "search.skin = ")
+    skin = re.search(r"search\.skin = ([0-9.e+-]+)", told).group(1)
+    fresh("case.out")
+    done = run("run", "case.toml", "--quiet", "--set", f"search.skin={skin}", "--steps", 40)
+    expect(done.returncode == 0, f"with search.skin = {skin}: {done.stderr}")
+
+
+def check_far_away():
+    far = changed(SHOT[:SHOT.index("[[wall]]")], ("lo = [0.0, 0.0]", "lo = [5e6, 0.0]"), ("hi = [3.0", "hi = [5000003.0"),
+                  ("[0.3033, ", "[5000000.3, "), ("[2.7, ", "[5000002.7, "), ("[60.0", "[4e-6"))
+    write("far.toml", far)
+    for ranks in (1, 2):
+        fresh("far.out")
+        done = run("run", "far.toml", "--quiet", ranks=ranks)
+        expect_failure("far away", done, "far.toml", "9.3e-10 m apart", "4e-10 m a step", "subtract (5000002, 0)", status=2)
+    expect_failure("check, far away", run("check", "far.toml"), "4e-10 m a step", status=2)
+    write("far.toml", changed(far, ("[4e-6", "[4e-3")))
+    done = run("check", "far.toml")
+    expect(done.returncode == 0 and "fewer than three digits" in done.stdout, f"check with few digits: {done.stdout}")
+    fresh("far.out")
+    done = run("run", "far.toml", "--quiet")
+    expect(done.returncode == 0 and any("fewer than three digits" in line for line in messages(done)),
+           f"run with few digits: {done.stderr}")
+
+
+def check_overflow():
+    write("heavy.toml", changed(SHOT, ("density = 1000.0", "density = 1e94"), ("normal_stiffness = 1e3", "normal_stiffness = 1e80")))
+    for ranks in (1, 2):
+        fresh("heavy.out")
+        expect_failure("overflow", run("run", "heavy.toml", "--quiet", ranks=ranks), "at step 0 the kinetic energy")
+
+
+check_shots()
+check_warnings()
+check_fall()
+check_too_fast()
+check_far_away()
+check_overflow()
+finish()
