@@ -100,6 +100,11 @@ def check_shots():
     around = changed(pair, ("hi = [3.0, 3.0]", 'hi = [3.0, 3.0]\nperiodic = ["x"]'), ("[60.0", "[-60.0"), ("[-30.0", "[30.0"))
     expect_same_words("shots around the box", around, "particle 1 at", "has passed particle 2 at")
 
+    several = "".join(f'{{ position = [{x}, {y}], radius = 0.001, velocity = [{v}, 0.0] }}, '
+                      for x, y, v in ((2.3, 1.5, 60.0), (2.3637, 1.5, -30.0), (0.3, 1.0, 60.0), (0.3637, 1.0, -30.0)))
+    both = changed(pair, ("particle = [ ", "particle = [ " + several))
+    expect_same_words("shots in two strips", both, "particle 1 at", "has passed particle 2 at")
+
     remedy = dict(re.findall(r"(normal_stiffness|time\.step) = ([0-9.e+-]+)", told))
     step = float(remedy["time.step"])
     write("held.toml", changed(SHOT, ("normal_stiffness = 1e3", f"normal_stiffness = {float(remedy['normal_stiffness'])}"),
@@ -143,13 +148,22 @@ def check_fall():
 
 
 def check_too_fast():
-    """What no list of the default skin may miss: a wider one is a remedy."""
-    deck = changed(FALL, ("radius = 0.05 } ]", "radius = 0.05, velocity = [0.0, -30.0] } ]"))
-    told = expect_same_words("too fast", deck, "particle 41 at", "search.skin = ")
+    """A ball that leaves the domain by 0.7 radii a step: the default skin allows for it; of a narrow one the error names a remedy."""
+    deck = changed(FALL, ("radius = 0.05 } ]", "radius = 0.05, velocity = [0.0, 35.0] } ]"), ("steps = 1000", "steps = 40"))
+    write("case.toml", deck)
+    digests = set()
+    for ranks in (1, 3):
+        fresh("case.out")
+        done = run("run", "case.toml", "--quiet", ranks=ranks)
+        expect(done.returncode == 0, f"a ball that flies away on {ranks} ranks: {done.stderr}")
+        digests.add(digest_of("case.out"))
+    told = expect_same_words("too fast", deck + "[search]\nskin = 0.01\n", "particle 41 at", "search.skin = ")
     skin = re.search(r"search\.skin = ([0-9.e+-]+)", told).group(1)
     fresh("case.out")
-    done = run("run", "case.toml", "--quiet", "--set", f"search.skin={skin}", "--steps", 40)
+    done = run("run", "case.toml", "--quiet", "--set", f"search.skin={skin}")
     expect(done.returncode == 0, f"with search.skin = {skin}: {done.stderr}")
+    digests.add(digest_of("case.out"))
+    expect(len(digests) == 1, f"a ball that flies away: {digests}")
 
 
 def check_far_away():

@@ -287,9 +287,17 @@ TEST(Watch, AWallThatOutrunsTheSkinIsNoticed) {
   Scenario s = moving_walls();
   s.num_steps = 2000;
   s.model.gravity = Vec3::Zero();
-  s.model.walls.push_back(loaded_plate(0.95, 0.5, 5e4, 0.01));  // faster than any check expects
+  s.model.walls.push_back(loaded_plate(0.95, 0.5, 1e3, 0.01));  // faster than any check expects
   s.model.time.allow_unstable = true;
   expect_on_all_ranks(error_of(s, with_threads(1)), {"a particle or wall had moved", "the skin"});
+}
+
+TEST(Watch, APlateThatMayPassParticlesUnseenIsAnErrorBeforeThatStep) {
+  Scenario s = moving_walls();
+  s.model.walls.push_back(loaded_plate(0.95, 0.5, 5e4, 0.01));
+  s.model.time.allow_unstable = true;
+  expect_on_all_ranks(error_of(s, with_threads(1)),
+                      {"wall 'plate' moves ", " m in one step", "smallest radius"});
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ struct Course {
 /// Runs a schedule against a course. @return the largest distance that any step was computed with
 double farthest(Course course, double gravity, int num_steps, int& rebuilds) {
   RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, gravity, kLook);
+  schedule.begin(0, course.speed);
   double most = 0.0;
   rebuilds = 0;
   for (std::int64_t step = 0; step < num_steps; ++step) {
