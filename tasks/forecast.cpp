@@ -73,12 +73,21 @@ std::string two_digits_down(double x) {
   return fmt::format("{:.2g}", std::floor(x / unit) * unit);
 }
 
-std::string consequence(const Model& model, double speed, const ParticleData& smallest) {
+/// What comes of something so fast; empty: nothing.
+std::string consequence(const Model& model, double speed, double skin,
+                        const ParticleData& smallest) {
+  const double travel = speed * model.time.step, radius = smallest.radius;
+  const double most = 0.5 * std::max(skin, radius);
+  if (travel <= std::min(most, radius)) return {};
+  const bool ends = travel > most;
   return fmt::format(
-      "{:.3g} m a step, more than the smallest radius ({:.3g} m, of particle {}): the run ends "
-      "where a plate or a particle would be passed; with time.step = {} or less none is skipped",
-      speed * model.time.step, smallest.radius, smallest.id,
-      two_digits_down(smallest.radius / speed));
+      "{:.3g} m a step, more than {}the smallest radius ({:.3g} m, of particle {}){}; with "
+      "time.step "
+      "= {} or less no contact is skipped",
+      travel, ends ? "half of " : "", radius, smallest.id,
+      ends ? fmt::format(" and half of the skin ({:.3g} m): the run ends where it is so fast", skin)
+           : ": the run ends where a plate or a particle would be passed",
+      two_digits_down((ends ? 0.5 : 1.0) * radius / speed));
 }
 
 /// The part of an axis' coordinates that could be taken off them, to few digits.
@@ -137,20 +146,24 @@ std::vector<std::string> speed_warnings(const Model& model, const ParticleSet& s
   std::vector<std::string> warnings;
   const auto [start, fall, smallest] = speeds_of(model, set);
   if (smallest == nullptr) return warnings;
-  const double most = smallest->radius / model.time.step;
-  if (start.speed > most) {
-    warnings.push_back(fmt::format("particle {} starts at {:.3g} m/s, {}", start.particle->id,
-                                   start.speed, consequence(model, start.speed, *smallest)));
-  } else if (fall.speed > most) {
-    warnings.push_back(fmt::format(
-        "particle {}, if it falls to the end of the domain ({:.3g} m), gets {:.3g} m/s, {}",
-        fall.particle->id, fall.height, fall.speed, consequence(model, fall.speed, *smallest)));
-  }
+  const double skin = model.search.skin.value_or(default_skin(model, set));
+  const auto warn = [&](double speed, const auto& who) {
+    const std::string what = consequence(model, speed, skin, *smallest);
+    if (!what.empty()) warnings.push_back(who() + ", " + what);
+  };
+  warn(start.speed, [&start = start] {
+    return fmt::format("particle {} starts at {:.3g} m/s", start.particle->id, start.speed);
+  });
+  if (warnings.empty())
+    warn(fall.speed, [&fall = fall] {
+      return fmt::format(
+          "particle {}, if it falls to the end of the domain ({:.3g} m), gets {:.3g} m/s",
+          fall.particle->id, fall.height, fall.speed);
+    });
   for (const WallSpec& wall : model.walls) {
     const double speed = wall.velocity.norm();
-    if (wall.kind == WallKind::Plate && speed > most)
-      warnings.push_back(fmt::format("wall '{}' moves at {:.3g} m/s, {}", wall.name, speed,
-                                     consequence(model, speed, *smallest)));
+    if (wall.kind == WallKind::Plate)
+      warn(speed, [&] { return fmt::format("wall '{}' moves at {:.3g} m/s", wall.name, speed); });
   }
   return warnings;
 }
@@ -193,7 +206,7 @@ void check_precision(const Model& model, const ParticleSet& set) {
   const std::string what = too_small(p, kOneDigit, false);
   if (what.empty()) return;
   throw InputError(
-      SourcePlace{model.deck_file, 0, 0},
+      model.domain.place,
       fmt::format("{}: {}, so that nothing would move or touch rightly", where(p), what),
       remedy(model));
 }

@@ -54,7 +54,7 @@ constexpr KeySpec kRunKeys[] = {
     {"[search]", "kind", T::Choice, "", "cells",
      "`cells` with lists of candidates, or every pair with every other, as a reference",
      "cells|all-pairs"},
-    {"[search]", "skin", T::NonNegativeNumber, "m", "from the radii, then tuned",
+    {"[search]", "skin", T::NonNegativeNumber, "m", "from the radii and speeds, then tuned",
      "gap up to which a pair is kept as a candidate"},
 
     {"[limits]", "overlap_warning", T::NonNegativeNumber, "", "0.5",

@@ -50,6 +50,18 @@ TEST(SpeedWarnings, CompareTheFastestOfTheStartWithTheSmallestRadius) {
   EXPECT_TRUE(speed_warnings(model, set).empty());
 }
 
+/// With a narrow skin a run ends sooner.
+TEST(SpeedWarnings, CompareWithTheSkinOfTheDeckToo) {
+  Model model = model_of(0.0, 10.0);
+  const ParticleSet set{{disk(1, {1, 1, 0}, 0.005, {30, 0, 0})}, {}};  // 0.003 m a step
+  EXPECT_TRUE(speed_warnings(model, set).empty());
+
+  model.search.skin = 0.001;
+
+  EXPECT_NE(only_warning(speed_warnings(model, set)).find("the run ends where it is so fast"),
+            std::string::npos);
+}
+
 TEST(SpeedWarnings, CountTheFallToTheEndOfTheDomain) {
   Model model = model_of(0.0, 10.0);
   model.gravity = Vec3(0.0, -9.81, 0.0);
