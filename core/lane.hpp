@@ -126,6 +126,7 @@ class Lane {
 
   // ---- checkpoints (lane_checkpoint.cpp)
   /// Everything that the next step depends on, between steps. Reuses the memory of `share`.
+  /// @pre ghosts are up to date
   void save(CheckpointShare& share);
   /// Instead of seed: owns the particles of a checked share, and queues the history of contacts,
   /// walls and bonds that have an end among them. order() … restore_history() follow.
@@ -255,7 +256,8 @@ class Lane {
   Slot owned_slot(std::int32_t low, std::int32_t high);
   Slot find_pair(PairList& list, std::pair<std::int32_t, std::int32_t> wanted) const;
   std::int32_t find_near(std::int32_t row, std::int64_t id) const;
-  void place(std::int32_t a, std::int32_t b, const double* spring_a_to_b);
+  bool place(std::int32_t a, std::int32_t b, const double* spring_a_to_b);
+  void restore_wall_history();
   static void put(const Slot& at, bool is_swapped, const double* spring);
   /// @param number  of every row that leaves, its place among the leavers
   void collect_history(std::array<Migration<Dim>, 2>& leaving,

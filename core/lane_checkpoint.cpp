@@ -34,16 +34,24 @@ void save_particles(const ParticleStore<Dim>& store, CheckpointShare& share) {
   }
 }
 
+/// Of squared distances and of distances: what touches, and a little more for rounding.
+constexpr double kTouching = 1.0 + 1e-9;
+
+/// Those that touch. Others lose their spring in the next step anyway, and may be farther apart
+/// than the lists of a restart reach.
 template <int Dim>
-void save_contacts(const ParticleStore<Dim>& store, const PairList& list, CheckpointShare& share) {
+void save_contacts(const PeriodicBox& box, const ParticleStore<Dim>& store, const PairList& list,
+                   CheckpointShare& share) {
   constexpr int kSprings = Layout<Dim>::kSprings;
   for (std::int64_t k = 0; k < list.size(); ++k) {
     const double* spring = list.template springs<Dim>(k);
     if (!list.template has_spring<Dim>(k)) continue;
-    for (const std::int32_t end :
-         {list.i[static_cast<std::size_t>(k)], list.j[static_cast<std::size_t>(k)]}) {
+    const std::int32_t i = list.i[static_cast<std::size_t>(k)],
+                       j = list.j[static_cast<std::size_t>(k)];
+    const double reach = store.radius(i) + store.radius(j);
+    if (distance2<Dim>(box, store.x(i), store.x(j)) > kTouching * reach * reach) continue;
+    for (const std::int32_t end : {i, j})
       share.contact_ids.push_back(store.id[static_cast<std::size_t>(end)]);
-    }
     for (int c = 0; c < kSprings; ++c) share.contact_springs.push_back(spring[c * kBatch]);
   }
 }
@@ -55,11 +63,16 @@ void Lane<Dim>::save(CheckpointShare& share) {
   share.clear();
   unpack_history();
   save_particles(store_, share);
-  save_contacts(store_, pairs_, share);
-  if (bands_[Left].exists) save_contacts(store_, bands_[Left].across, share);
+  const PeriodicBox& box = world_->grid.box();
+  save_contacts(box, store_, pairs_, share);
+  if (bands_[Left].exists) save_contacts(box, store_, bands_[Left].across, share);
 
   for (const WallContact<Dim>& c : walls_.list()) {
-    if (!has_spring(c)) continue;
+    const auto w = static_cast<std::size_t>(c.wall);
+    if (!has_spring(c) ||
+        world_->wall_shapes[w].foot(world_->walls[w].point, c.image, store_.x(c.row)).distance >
+            kTouching * store_.radius(c.row))
+      continue;
     share.wall_contact_ids.push_back(store_.id[static_cast<std::size_t>(c.row)]);
     share.wall_contact_walls.push_back(c.wall);
     share.wall_contact_images.insert(share.wall_contact_images.end(), c.image.begin(),

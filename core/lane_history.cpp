@@ -154,16 +154,18 @@ std::int32_t Lane<Dim>::find_near(std::int32_t row, std::int64_t id) const {
   return found;
 }
 
+/// @return whether they are candidates: if not, they are out of touch
 template <int Dim>
-void Lane<Dim>::place(std::int32_t a, std::int32_t b, const double* spring) {
+bool Lane<Dim>::place(std::int32_t a, std::int32_t b, const double* spring) {
   const Slot at = slot(a, b);
-  if (at.list == nullptr) return;  // no longer a candidate, so out of touch
+  if (at.list == nullptr) return false;
   if (at.list == &bands_[Right].across && bands_[Right].returns)
-    return;  // kept by the right-hand side
+    return true;  // kept by the right-hand side
   // What comes from both sides, and what the lane right of a cut counts, is not counted again.
   const bool counts = at.list != &bands_[Right].across && !at.list->template has_spring<Dim>(at.k);
   if (counts) ++imbalance_.contacts;
   put(at, at.list->i[static_cast<std::size_t>(at.k)] != a, spring);
+  return true;
 }
 
 template <int Dim>
@@ -175,20 +177,27 @@ void Lane<Dim>::put(const Slot& at, bool is_swapped, const double* spring) {
 
 template <int Dim>
 void Lane<Dim>::restore_history() {
+  // Fast ones may have parted in the last step by more than the skin: nothing is lost then.
+  const auto touch = [this](std::int32_t a, std::int32_t b) {
+    const double reach = store_.radius(a) + store_.radius(b);
+    return distance2<Dim>(world_->grid.box(), store_.x(a), store_.x(b)) < reach * reach;
+  };
   for (const KeptContact& c : kept_) {
     if (loses(Loss::Contact)) continue;
     const std::int32_t a = new_row_[static_cast<std::size_t>(c.i)],
                        b = new_row_[static_cast<std::size_t>(c.j)];
     const Slot at = owned_slot(std::min(a, b), std::max(a, b));
-    if (at.list == nullptr) continue;  // no longer a candidate, so out of touch
-    put(at, a > b, c.spring);
-    ++imbalance_.contacts;
+    if (at.list != nullptr) put(at, a > b, c.spring);
+    if (at.list != nullptr || !touch(a, b)) ++imbalance_.contacts;
   }
   kept_.clear();
   for (const LooseContact<Dim>& c : loose_) {
     const std::int32_t row = new_row_[static_cast<std::size_t>(c.handle)];
     const std::int32_t partner = find_near(row, c.partner);
-    if (partner >= 0) place(row, partner, c.spring);
+    // Of two that parted, both ends come here; the lower id counts.
+    if ((partner < 0 || (!place(row, partner, c.spring) && !touch(row, partner))) &&
+        store_.id[static_cast<std::size_t>(row)] < c.partner)
+      ++imbalance_.contacts;
   }
   loose_.clear();
   bonds_.resolve(store_);
@@ -196,22 +205,31 @@ void Lane<Dim>::restore_history() {
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.bonds().size()); ++b)
     imbalance_.bonds += counts_bond(b) ? 1 : 0;
 
+  restore_wall_history();
+  removed_.clear();
+  find_quick();
+}
+
+template <int Dim>
+void Lane<Dim>::restore_wall_history() {
   walls_.search(store_, world_->wall_view(), world_->skin);
   for (WallContact<Dim>& c : old_walls_) c.row = new_row_[static_cast<std::size_t>(c.row)];
   std::sort(old_walls_.begin(), old_walls_.end(),
             [](const auto& p, const auto& q) { return key_of(p) < key_of(q); });
-  auto old = old_walls_.begin();
-  for (WallContact<Dim>& c : walls_.list()) {
-    while (old != old_walls_.end() && key_of(*old) < key_of(c)) ++old;
-    if (old == old_walls_.end()) break;
-    if (key_of(*old) != key_of(c)) continue;
-    if (has_spring(*old) && loses(Loss::WallContact)) continue;
-    std::copy_n(old->spring, int{L::kSprings}, c.spring);
-    if (has_spring(c)) ++imbalance_.wall_contacts;
+  const auto touches = [this](const WallContact<Dim>& c) {
+    const auto w = static_cast<std::size_t>(c.wall);
+    return world_->wall_shapes[w].foot(world_->walls[w].point, c.image, store_.x(c.row)).distance <
+           store_.radius(c.row);
+  };
+  auto now = walls_.list().begin();
+  for (const WallContact<Dim>& old : old_walls_) {
+    while (now != walls_.list().end() && key_of(*now) < key_of(old)) ++now;
+    const bool is_listed = now != walls_.list().end() && key_of(*now) == key_of(old);
+    if (!has_spring(old) || (is_listed ? loses(Loss::WallContact) : touches(old))) continue;
+    if (is_listed) std::copy_n(old.spring, int{L::kSprings}, now->spring);
+    ++imbalance_.wall_contacts;
   }
   old_walls_.clear();
-  removed_.clear();
-  find_quick();
 }
 
 template class Lane<2>;

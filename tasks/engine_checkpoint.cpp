@@ -50,6 +50,7 @@ template <int Dim>
 void Simulation::EngineOf<Dim>::save_checkpoint() {
   const auto begin = std::chrono::steady_clock::now();
   must_save_ = false;
+  strip_->complete_halo();  // whether pairs across cuts touch
   CheckpointCopy& copy = keeper_->begin();
   copy.step = step_;
   copy.time = static_cast<double>(step_) * model_.time.step;

@@ -223,6 +223,34 @@ TEST(ListsThatLastForAStep, GiveTheBitsOfOneRankOnAnyNumberOfRanksAndThreads) {
     EXPECT_EQ(digest(MPI_COMM_WORLD, with_threads(threads)), expected) << threads;
 }
 
+/// Disks that touch, with springs, and part by more than the skin in a step; all pairs need no
+/// lists.
+TEST(ListsThatLastForAStep, LoseNoContactThatEndsAndFindAllThatAllPairsFind) {
+  for (const bool is_periodic : {true, false}) {
+    Scenario s{"a fast gas", plain_model(2, 6.0, 3.0), {}, 150, {}, false};
+    s.model.domain.periodic = {is_periodic, is_periodic, false};
+    s.model.domain.outside = OutsidePolicy::Delete;
+    s.model.time.step = 1e-3;
+    s.model.contacts.constants[0].kn = 1e5;
+    s.model.time.allow_unstable = true;
+    s.model.limits = {50.0, 100.0};
+    s.model.search.skin = 0.002;
+    add_cloud(s.set, 2, {{0.1, 0.1, 0.0}, {5.9, 2.9, 0.0}, 0.18, 0.04, 3.0, 7});
+    RunOptions all_pairs = with_threads(1);
+    all_pairs.search = ContactSearchKind::AllPairs;
+    const Words expected = whole_run(s, MPI_COMM_SELF, all_pairs, 60, "").end;
+    for (const int threads : {1, 3}) {
+      const SharedFolder folder;
+      EXPECT_EQ(whole_run(s, MPI_COMM_WORLD, with_threads(threads), 60, folder.path()).end,
+                expected)
+          << threads << " threads";
+      Simulation sim = Simulation::restore(s.model, folder.at(60), MPI_COMM_WORLD, with_threads(2));
+      sim.run(s.num_steps - 60);
+      EXPECT_EQ(words_of(sim), expected) << "from a checkpoint";
+    }
+  }
+}
+
 TEST(ListsThatLastForAStep, GoOnFromACheckpointWithTheSameBits) {
   const Scenario s = fast_fall();
   const SharedFolder folder;
