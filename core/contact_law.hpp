@@ -50,17 +50,19 @@ struct PairState<S, 3> {
   Real ux, uy, uz;
 };
 
+/// Force on the first particle [N], and torque / radius on both. `size` is at least the largest
+/// component of either.
 template <class S, int Dim>
 struct PairForce;
 
 template <class S>
 struct PairForce<S, 2> {
-  typename S::Real fx, fy, ft;
+  typename S::Real fx, fy, ft, size;
 };
 
 template <class S>
 struct PairForce<S, 3> {
-  typename S::Real fx, fy, fz, tx, ty, tz;
+  typename S::Real fx, fy, fz, tx, ty, tz, size;
 };
 
 template <class S>
@@ -105,6 +107,7 @@ template <class S, Damping D>
 
 /// @param spring  tangential spring [m], replaced by its value after the step; zero where the pair
 /// does not touch
+/// @param out  of lanes that touch; of others any number
 /// @return which lanes touch
 template <class S, Damping D>
 [[gnu::always_inline]] inline typename S::Mask respond(const LawConstants<S>& c,
@@ -117,7 +120,7 @@ template <class S, Damping D>
   const Real d2 = p.dx * p.dx + p.dy * p.dy;
   const auto touching = S::less(d2, p.reach * p.reach);
   if (!S::any(touching)) {
-    spring = out.fx = out.fy = out.ft = zero;
+    spring = zero;
     return touching;
   }
   const Real d = S::sqrt(d2);
@@ -138,10 +141,11 @@ template <class S, Damping D>
   const Real ft = S::select(sliding, S::copysign(limit, sticking), sticking);
   const Real kept = S::select(sliding, (ft - viscous) * c.inverse_kt, stretched);
 
-  spring = S::select(touching, kept, zero);
-  out.fx = S::select(touching, fn * nx - ft * ny, zero);
-  out.fy = S::select(touching, fn * ny + ft * nx, zero);
-  out.ft = S::select(touching, ft, zero);
+  spring = S::where(touching, kept);
+  out.fx = fn * nx - ft * ny;
+  out.fy = fn * ny + ft * nx;
+  out.ft = ft;
+  out.size = S::abs(fn) + limit;
   return touching;
 }
 
@@ -158,7 +162,6 @@ template <class S, Damping D>
   const auto touching = S::less(d2, p.reach * p.reach);
   if (!S::any(touching)) {
     s[0] = s[1] = s[2] = zero;
-    out.fx = out.fy = out.fz = out.tx = out.ty = out.tz = zero;
     return touching;
   }
   const Real d = S::sqrt(d2);
@@ -191,15 +194,16 @@ template <class S, Damping D>
     b = S::select(sliding, (fy - gy) * c.inverse_kt, b);
     e = S::select(sliding, (fz - gz) * c.inverse_kt, e);
   }
-  s[0] = S::select(touching, a, zero);
-  s[1] = S::select(touching, b, zero);
-  s[2] = S::select(touching, e, zero);
-  out.fx = S::select(touching, fn * nx + fx, zero);
-  out.fy = S::select(touching, fn * ny + fy, zero);
-  out.fz = S::select(touching, fn * nz + fz, zero);
-  out.tx = S::select(touching, ny * fz - nz * fy, zero);
-  out.ty = S::select(touching, nz * fx - nx * fz, zero);
-  out.tz = S::select(touching, nx * fy - ny * fx, zero);
+  s[0] = S::where(touching, a);
+  s[1] = S::where(touching, b);
+  s[2] = S::where(touching, e);
+  out.fx = fn * nx + fx;
+  out.fy = fn * ny + fy;
+  out.fz = fn * nz + fz;
+  out.tx = ny * fz - nz * fy;
+  out.ty = nz * fx - nx * fz;
+  out.tz = nx * fy - ny * fx;
+  out.size = S::abs(fn) + limit;
   return touching;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include <fmt/format.h>
@@ -58,15 +57,11 @@ double largest_share(double overlap_limit) {
 double largest_sum(const ContactConstants& law, const Largest& a, const Largest& b, double speed,
                    const Model& model) {
   const bool is_flat = model.dimension == 2;
-  const double friction = std::sqrt(1.0 + law.mu * law.mu);
   const double mass = a.mass * b.mass / (a.mass + b.mass);
   const double damping = law.cn.constant + law.cn.rate * mass + law.cn.critical * std::sqrt(mass);
   const double overlap = largest_share(model.limits.overlap_error) * std::min(a.radius, b.radius);
-  // |nx| + |ny| (+ |nz|) of a normal: 4/pi and 3/2 in the mean, sqrt(2) and sqrt(3) at most.
-  const double squeezed = (is_flat ? 3.0 * 4.0 / std::numbers::pi : 6.0 * 1.5) * law.kn * overlap;
-  const double hit = (is_flat ? std::numbers::sqrt2 : std::numbers::sqrt3) *
-                     std::max(law.kn * overlap, damping * speed);
-  return friction * std::max(squeezed, hit);
+  const double squeezed = (is_flat ? 3.0 : 6.0) * law.kn * overlap;
+  return (1.0 + law.mu) * std::max(squeezed, damping * speed);
 }
 
 }  // namespace

@@ -6,22 +6,25 @@
 
 namespace barchan {
 
-/// The unit of all sums of contact forces: every contribution to a row is rounded once to a
-/// multiple of it, and multiples of one power of two add without rounding. A sum that rounds
-/// nothing has no order, so no list, cut, thread or schedule is in its bits.
+/// The unit of all sums of contact forces. A sum starts from the rounder M, whose neighbours are one
+/// grain away, so that every addition rounds what it adds to a multiple of the grain:
 ///
-///   rounded = (f + M) − M,   M = 1.5·2^52·size            f + M has no bits below `size`
+///   M + f1 + f2 + …  =  M + r(f1) + r(f2) + …,   M = 1.5·2^52·size,   F = the sum − M, exactly
 ///
-/// This holds while |f| < 2^51·size (beyond it f and −f would round differently) and while partial
-/// sums stay below 2^53·size. Both follow from one bound on the sum of the sizes of all
-/// contributions to a row, which is summed along with them and watched in every step.
+/// r does not depend on what is in the sum, unless f is a tie, half-way between two multiples; so
+/// the last bit of every f is set, which no tie has. A sum that rounds nothing else has no order, and
+/// no list, cut, thread or schedule is in its bits.
+///
+/// This holds while all partial sums of f stay within ±2^51·size. That follows from a bound on the
+/// sum of the sizes of all contributions to a row, which is summed along with them and watched in
+/// every step.
 /// Source: Demmel & Nguyen 2013, doi:10.1109/ARITH.2013.9 (pre-rounding).
 struct ForceGrain {
   double size = 1.0;  ///< a power of two [N]
 
-  /// M, as the kernels take it [N].
+  /// M [N].
   [[nodiscard]] double rounder() const { return 0x1.8p52 * size; }
-  /// Largest sum of |fx| + |fy| (+ |fz|) over the contributions to one row [N].
+  /// Largest sum of sizes over the contributions to one row; none has a larger component [N].
   [[nodiscard]] double most() const { return 0x1.ffp50 * size; }
 };
 

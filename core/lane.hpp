@@ -83,11 +83,14 @@ class Lane {
   [[nodiscard]] bool is_fast() const { return is_beyond_; }
   /// Two that passed each other in the step before the last one; of several the first.
   [[nodiscard]] const Passage& passage() const { return passage_; }
-  /// A particle that bore more in the last step than can be summed exactly.
-  [[nodiscard]] const Overload& overload() const { return speeds_.overload; }
+  /// Of a particle the contact forces in the last step, by size, where they were more than can be
+  /// summed exactly [N]; else zero.
+  [[nodiscard]] double overload() const {
+    return speeds_.top_force > world_->grain.most() ? speeds_.top_force : 0.0;
+  }
   /// The last step went wrong in one of these ways.
   [[nodiscard]] bool must_stop() const {
-    return is_fast() || passage_.exists() || overload().id != 0;
+    return is_fast() || passage_.exists() || overload() > 0.0;
   }
   /// Of those that did the one with the lowest id. @pre is_fast()
   [[nodiscard]] std::int32_t first_fast_row() const;

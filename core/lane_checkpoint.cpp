@@ -106,7 +106,7 @@ void Lane<Dim>::restore(int slab_begin, int slab_end, const CheckpointShare& sha
   const auto n = static_cast<std::int32_t>(share.ids.size());
   store_.num_owned = n;
   store_.num_ghosts = {};
-  store_.resize_for_ghosts();
+  store_.resize_for_ghosts(world_->grain.rounder());
   goes_.assign(share.ids.size(), 0);
   std::unordered_map<std::int64_t, std::int32_t> row_of;
   for (std::int32_t i = 0; i < n; ++i) {

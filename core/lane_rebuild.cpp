@@ -196,7 +196,7 @@ void Lane<Dim>::order() {
   if (!store_.external.empty()) store_.external.resize(static_cast<std::size_t>(stays) * L::kForce);
   store_.num_owned = stays;
   store_.num_ghosts = {};
-  store_.resize_for_ghosts();
+  store_.resize_for_ghosts(world_->grain.rounder());
   cells_.index(world_->grid, store_, {0, stays}, slab_begin_, slab_end_);
   resize_with_room(store_.reference, static_cast<std::size_t>(stays) * Dim);
   double* reference = store_.reference.data();
@@ -229,7 +229,7 @@ void Lane<Dim>::take_ghosts(std::span<const std::byte> left, std::span<const std
     ghosts[side] = decode_ghosts(side == Left ? left : right, *world_, slabs[side]);
     store_.num_ghosts[side] = static_cast<std::int32_t>(ghosts[side].size());
   }
-  store_.resize_for_ghosts();
+  store_.resize_for_ghosts(world_->grain.rounder());
   for (const Side side : {Left, Right}) {
     if (!bands_[side].exists) continue;
     std::int32_t row = store_.ghost_begin(side);

@@ -3,6 +3,7 @@
 
 #include <barchan/core/error.hpp>
 #include <barchan/core/lane.hpp>
+#include <barchan/core/simd/denormals.hpp>
 
 // The published exchange: the band at a right cut goes to the right neighbour, which computes the
 // forces of its contacts and sends them back, summed for every particle of the band: sums are
@@ -26,13 +27,15 @@ template <int Dim>
 void Lane<Dim>::results(std::vector<double>& out) {
   const auto first = store_.force.begin() + std::ptrdiff_t{store_.ghost_begin(Left)} * L::kForce;
   const auto last = first + std::ptrdiff_t{store_.num_ghosts[Left]} * L::kForce;
+  store_.take_out(world_->grain.rounder(), store_.ghost_begin(Left), store_.ghost_begin(Right));
   out.assign(first, last);
-  std::fill(first, last, 0.0);
+  store_.start_forces(world_->grain.rounder(), store_.ghost_begin(Left), store_.ghost_begin(Right));
   bonds_.export_group(BondSet<Dim>::Left, out);
 }
 
 template <int Dim>
 void Lane<Dim>::finish_right_band(std::span<const double> results) {
+  const simd::DenormalsAreZero quiet;
   const Rows rows = bands_[Right].rows;
   if (results.size() * sizeof(double) != results_bytes(Right)) {
     throw RunError("a results message has " + std::to_string(results.size()) + " numbers for " +

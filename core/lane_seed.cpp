@@ -15,7 +15,7 @@ void Lane<Dim>::seed(int slab_begin, int slab_end, std::span<const ParticleData>
   const auto n = static_cast<std::int32_t>(particles.size());
   store_.num_owned = n;
   store_.num_ghosts = {};
-  store_.resize_for_ghosts();
+  store_.resize_for_ghosts(world_->grain.rounder());
   goes_.assign(particles.size(), 0);
   for (std::int32_t i = 0; i < n; ++i) {
     const ParticleData& p = particles[static_cast<std::size_t>(i)];

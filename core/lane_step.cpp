@@ -5,6 +5,7 @@
 
 #include <barchan/core/error.hpp>
 #include <barchan/core/lane.hpp>
+#include <barchan/core/simd/denormals.hpp>
 
 namespace barchan {
 namespace {
@@ -33,7 +34,6 @@ PairJob Lane<Dim>::job(PairList& list) const {
   job.begin = 0;
   job.end = list.size();
   job.dt = spring_step(frame_, world_->dt);
-  job.rounder = world_->grain.rounder();
   job.box = world_->grid.box();
   job.laws = world_->laws.view();
   return job;
@@ -41,11 +41,13 @@ PairJob Lane<Dim>::job(PairList& list) const {
 
 template <int Dim>
 void Lane<Dim>::press_plates(const StepFrame& frame, std::span<WallSums> sums) {
+  const simd::DenormalsAreZero quiet;
   walls_.press(store_, wall_frame(spring_step(frame, world_->dt)), sums);
 }
 
 template <int Dim>
 void Lane<Dim>::begin_step(const StepFrame& frame) {
+  const simd::DenormalsAreZero quiet;
   frame_ = frame;
   wraps_now_ = world_->grid.box().any() && (frame.step + 1) % kEventSteps == 0;
   step_travel_ = speeds_.top * world_->dt;
@@ -65,6 +67,7 @@ void Lane<Dim>::begin_step(const StepFrame& frame) {
 
 template <int Dim>
 void Lane<Dim>::run_chunk(int chunk) {
+  const simd::DenormalsAreZero quiet;
   const auto c = static_cast<std::size_t>(chunk);
   for (int b = chunks_[c]; b < chunks_[c + 1]; ++b) run_block(blocks_[static_cast<std::size_t>(b)]);
 }
@@ -84,9 +87,11 @@ void Lane<Dim>::run_block(Block& block) {
 
 template <int Dim>
 void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extras) {
-  if (has_extras || !store_.external.empty()) {
+  const bool has_more = has_extras || !store_.external.empty();
+  if (has_more) {
     if (frame_.has_moved(world_->dt))
       PassageWatch<Dim>(*world_, store_, passage_).look_at(walls_.list(), {begin, end});
+    store_.take_out(world_->grain.rounder(), begin, end);
     bonds_.add_to_rows(store_, begin, end);
     const double dt = spring_step(frame_, world_->dt);
     walls_.add_to_rows(store_, wall_frame(dt), wall_sums_, begin, end);
@@ -106,8 +111,8 @@ void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extra
               {frame_.gravity[0], frame_.gravity[1], frame_.gravity[2]},
               frame_.local_damping,
               quick_speed(),
-              world_->grain.most(),
-              store_.id.data()};
+              world_->grain.rounder(),
+              has_more};
   const RowKernel advance =
       frame_.local_damping != 0.0 ? world_->kernels.rows_damped : world_->kernels.rows;
   const RowSpeeds speeds = advance(rows);
@@ -172,6 +177,7 @@ void Lane<Dim>::pack_halo(Side side, std::span<std::byte> message) const {
 
 template <int Dim>
 void Lane<Dim>::finish_band(Side side) {
+  const simd::DenormalsAreZero quiet;
   Band& band = bands_[side];
   if (world_->search == ContactSearchKind::AllPairs) research_across(side);
   look_for_passages(side);

@@ -10,14 +10,14 @@ namespace barchan {
 /// Particles live in aligned records, so that a batch of pairs is aligned loads and a transpose:
 ///
 ///   2D  motion | x  y  r  –  | vx vy u  1/m |
-///       force  | fx fy ft –  |
+///       force  | fx fy ft S  |
 ///
 ///   3D  motion | x  y  z  r  | vx vy vz 1/m |
 ///       spin   | ux uy uz –  |
-///       force  | fx fy fz –  | tx ty tz –   |
+///       force  | fx fy fz S  | tx ty tz –   |
 ///
-/// u = r·omega is the surface speed [m/s]; ft, (tx ty tz) are torque / r [N]. A fixed particle has
-/// 1/m = 0.
+/// u = r·omega is the surface speed [m/s]; ft, (tx ty tz) are torque / r [N]; S is the sum of the
+/// sizes of contact forces. A fixed particle has 1/m = 0.
 template <int Dim>
 struct Layout;
 

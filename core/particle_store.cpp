@@ -5,12 +5,12 @@
 namespace barchan {
 
 template <int Dim>
-void ParticleStore<Dim>::resize_for_ghosts() {
+void ParticleStore<Dim>::resize_for_ghosts(double rounder) {
   const auto n = static_cast<std::size_t>(size());
   resize_with_room(motion, n * L::kMotion);
   resize_with_room(spin, n * L::kSpin);
   resize_with_room(force, n * L::kForce);
-  std::fill(force.begin(), force.end(), 0.0);
+  start_forces(rounder, 0, size());
   resize_with_room(id, n);
   resize_with_room(key, n);
   resize_with_room(type, n);
@@ -25,6 +25,18 @@ void ParticleStore<Dim>::resize_for_ghosts() {
     key[at] = -1;
     type[at] = flags[at] = 0;
   }
+}
+
+template <int Dim>
+void ParticleStore<Dim>::start_forces(double rounder, std::int32_t begin, std::int32_t end) {
+  for (double *f = this->f(begin), *last = this->f(end); f != last; f += 4)
+    f[0] = f[1] = f[2] = rounder, f[3] = 0.0;
+}
+
+template <int Dim>
+void ParticleStore<Dim>::take_out(double rounder, std::int32_t begin, std::int32_t end) {
+  for (double *f = this->f(begin), *last = this->f(end); f != last; f += 4)
+    for (int c = 0; c < 3; ++c) f[c] -= rounder;
 }
 
 template <int Dim>

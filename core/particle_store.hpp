@@ -58,8 +58,12 @@ struct ParticleStore {
   [[nodiscard]] double radius(std::int32_t i) const { return x(i)[L::kRadius]; }
   [[nodiscard]] double inverse_mass(std::int32_t i) const { return x(i)[L::kInverseMass]; }
 
-  /// Makes room for all rows, waste rows set, forces zero.
-  void resize_for_ghosts();
+  /// Makes room for all rows, waste rows set. @param rounder  what sums of forces start from
+  void resize_for_ghosts(double rounder = 0.0);
+  /// Forces of rows [begin, end) start from the rounder.
+  void start_forces(double rounder, std::int32_t begin, std::int32_t end);
+  /// Takes the rounder out of the forces of rows [begin, end).
+  void take_out(double rounder, std::int32_t begin, std::int32_t end);
   [[nodiscard]] std::size_t bytes() const;
 };
 

@@ -123,7 +123,7 @@ int Simulation::EngineOf<Dim>::steps_in_a_go(std::int64_t most) {
 }
 
 /// The earliest step in which a lane went wrong, and in that the lowest ids of two that passed each
-/// other, or of a fast particle, or of one that bore too much.
+/// other, or of a fast particle, or the lane with the particle that bore most.
 template <int Dim>
 void Simulation::EngineOf<Dim>::stop_if_wrong() {
   int steps = std::numeric_limits<int>::max();
@@ -132,8 +132,7 @@ void Simulation::EngineOf<Dim>::stop_if_wrong() {
   }
   if (steps == std::numeric_limits<int>::max()) return;
   step_ += steps - 1;
-  int fast = -1;
-  Overload overload;
+  int fast = -1, pressed = -1;
   Passage passage;
   const auto id_in = [this](int l) {
     const Lane<Dim>& lane = strip_->lane(l);
@@ -142,13 +141,13 @@ void Simulation::EngineOf<Dim>::stop_if_wrong() {
   for (int l = 0; l < strip_->num_lanes(); ++l) {
     const Lane<Dim>& lane = strip_->lane(l);
     if (!lane.must_stop() || graph_->steps_done(l) != steps) continue;
-    overload.add(lane.overload());
+    if (pressed < 0 || lane.overload() > strip_->lane(pressed).overload()) pressed = l;
     passage.add(lane.passage());
     if (lane.is_fast() && (fast < 0 || id_in(l) < id_in(fast))) fast = l;
   }
   if (passage.exists()) report_passage(passage);
   if (fast >= 0) report_fast(fast);
-  report_overload(overload);
+  report_overload(pressed);
 }
 
 /// Chunks of about kChunkSeconds, by what the pairs have cost since the last rebuild. No bit

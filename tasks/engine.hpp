@@ -141,7 +141,8 @@ class Simulation::EngineOf final : public Simulation::Engine {
   [[noreturn]] void report_fast(int lane);
   [[noreturn]] void report_passage(const Passage& passage) const;
   [[nodiscard]] std::string remedy_for_travel(double travel) const;
-  [[noreturn]] void report_overload(const Overload& overload);
+  [[noreturn]] void report_overload(int lane);
+  [[nodiscard]] std::string describe(const WorstOverlap& worst) const;
   [[nodiscard]] std::string describe(const Suspect& suspect,
                                      const typename Lane<Dim>::Partners& touched) const;
   [[nodiscard]] typename Lane<Dim>::Partners partners_of(const Suspect& suspect);

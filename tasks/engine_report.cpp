@@ -114,13 +114,16 @@ std::string Simulation::EngineOf<Dim>::describe_worst_overlap() {
     std::memcpy(&of_rank, bytes.data(), sizeof of_rank);
     take(of_rank);
   }
+  return communicator_.bcast("now it is largest between " + describe(worst));
+}
+
+template <int Dim>
+std::string Simulation::EngineOf<Dim>::describe(const WorstOverlap& worst) const {
   const std::string with =
       worst.wall >= 0 ? "wall '" + model_.walls[static_cast<std::size_t>(worst.wall)].name + "'"
                       : fmt::format("particle {}", worst.with);
-  return communicator_.bcast(
-      fmt::format("now it is largest between particle {} at {} and {}: {:.3g} m, {:.3g} of the "
-                  "smaller radius",
-                  worst.id, in_brackets(worst.position, Dim), with, worst.overlap, worst.share));
+  return fmt::format("particle {} at {} and {}: {:.3g} m, {:.3g} of the smaller radius", worst.id,
+                     in_brackets(worst.position, Dim), with, worst.overlap, worst.share);
 }
 
 template <int Dim>
@@ -199,14 +202,17 @@ void Simulation::EngineOf<Dim>::report_fast(int l) {
 
 /// This rank alone knows, as with a fast particle.
 template <int Dim>
-void Simulation::EngineOf<Dim>::report_overload(const Overload& overload) {
+void Simulation::EngineOf<Dim>::report_overload(int l) {
+  const Lane<Dim>& lane = strip_->lane(l);
+  const WorstOverlap worst = lane.worst_overlap();
   throw StepError(
-      {step_, Overloaded, overload.id, 0},
+      {step_, Overloaded, worst.id, 0},
       fmt::format(
-          "in step {} the contacts of particle {} press with {:.4g} N in all; sums of forces "
-          "are exact up to {:.4g} N, which follows from limits.overlap_error; less overlap at "
-          "the start or a smaller time.step would help, or a larger limits.overlap_error",
-          step_, overload.id, overload.force, world_.grain.most()));
+          "in step {} the contacts of one particle press with {:.4g} N in all; sums of forces "
+          "are exact up to {:.4g} N, which follows from limits.overlap_error; the largest overlap "
+          "near it is now between {}; less overlap at the start or a smaller time.step would help, "
+          "or a larger limits.overlap_error",
+          step_, lane.overload(), world_.grain.most(), describe(worst)));
 }
 
 template <int Dim>

@@ -32,6 +32,7 @@ struct Counting {
   static Real round(Real a) { return ++Counted::count, Real{std::rint(a.value)}; }
   static Mask less(Real a, Real b) { return a.value < b.value; }
   static Real select(Mask m, Real a, Real b) { return m ? a : b; }
+  static Real where(Mask m, Real a) { return m ? a : Real{0.0}; }
   static bool any(Mask m) { return m; }
   static unsigned bits(Mask m) { return m ? 1U : 0U; }
 };

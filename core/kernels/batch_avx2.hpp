@@ -57,8 +57,10 @@ struct BatchAvx2 {
     return base + stride * static_cast<std::size_t>(static_cast<std::uint32_t>(i));
   }
 
-  /// Half records a·sign + b; sign is ±1, so this rounds once.
-  BARCHAN_INLINE Real combine(Real a, Real sign, Real b) { return a * sign + b; }
+  /// Half records a·sign + b; sign is ±1, so the fused operation gives what a difference does.
+  BARCHAN_INLINE Real combine(Real a, Real sign, Real b) {
+    return Real(_mm256_fmadd_pd(__m256d(a), __m256d(sign), __m256d(b)));
+  }
 
   BARCHAN_INLINE void gather(const PairJob& job, std::int64_t k, PairState<Simd, 2>& p) {
     const Real sign_x = {-1, -1, 1, 1}, sign_v = {-1, -1, 1, 1};
@@ -102,60 +104,60 @@ struct BatchAvx2 {
   }
 
   template <Damping D, int Dim>
-  BARCHAN_INLINE void respond_with_spring(const PairJob& job, std::int64_t k,
-                                          const LawConstants<Simd>& c,
-                                          const PairState<Simd, Dim>& p, Real dt,
-                                          PairForce<Simd, Dim>& f) {
+  BARCHAN_INLINE Simd::Mask respond_with_spring(const PairJob& job, std::int64_t k,
+                                                const LawConstants<Simd>& c,
+                                                const PairState<Simd, Dim>& p, Real dt,
+                                                PairForce<Simd, Dim>& f) {
     if constexpr (Dim == 2) {
       Real s = Simd::load(job.spring + k);
-      respond<Simd, D>(c, p, dt, s, f);
+      const auto touching = respond<Simd, D>(c, p, dt, s, f);
       Simd::store(job.spring + k, s);
+      return touching;
     } else {
       double* h = job.spring + 24 * (k / 8) + k % 8;
       Real s[3] = {Simd::load(h), Simd::load(h + 8), Simd::load(h + 16)};
-      respond<Simd, D>(c, p, dt, s, f);
+      const auto touching = respond<Simd, D>(c, p, dt, s, f);
       for (int e = 0; e < 3; ++e) Simd::store(h + 8 * e, s[e]);
+      return touching;
     }
   }
 
   /// Force records [fx fy ft size] of four pairs, pair q in r[q].
-  BARCHAN_INLINE void records(const PairForce<Simd, 2>& f, Real size, Real (&r)[4]) {
-    r[0] = f.fx, r[1] = f.fy, r[2] = f.ft, r[3] = size;
+  BARCHAN_INLINE void records(const PairForce<Simd, 2>& f, Real (&r)[4]) {
+    r[0] = f.fx, r[1] = f.fy, r[2] = f.ft, r[3] = f.size;
     Simd::transpose(r[0], r[1], r[2], r[3]);
   }
 
   /// Force records [fx fy fz size | tx ty tz 0] of four pairs.
-  BARCHAN_INLINE void records(const PairForce<Simd, 3>& f, Real size, Real (&r)[8]) {
-    r[0] = f.fx, r[1] = f.fy, r[2] = f.fz, r[3] = size;
+  BARCHAN_INLINE void records(const PairForce<Simd, 3>& f, Real (&r)[8]) {
+    r[0] = f.fx, r[1] = f.fy, r[2] = f.fz, r[3] = f.size;
     r[4] = f.tx, r[5] = f.ty, r[6] = f.tz, r[7] = Simd::set(0.0);
     Simd::transpose(r[0], r[1], r[2], r[3]);
     Simd::transpose(r[4], r[5], r[6], r[7]);
   }
 
-  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f,
-                              Real size) {
+  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f) {
     const Real sign = {-1, -1, 1, 1};
     Real r[4];
-    records(f, size, r);
+    records(f, r);
     for (int q = 0; q < 4; ++q) {
       double* a = at(job.force, 4, job.i[k + q]);
       Simd::store(a, Simd::load(a) + r[q]);
       double* b = at(job.force, 4, job.j[k + q]);
-      Simd::store(b, Simd::load(b) + r[q] * sign);
+      Simd::store(b, combine(r[q], sign, Simd::load(b)));
     }
   }
 
-  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f,
-                              Real size) {
+  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f) {
     const Real sign = {-1, -1, -1, 1};
     Real r[8];
-    records(f, size, r);
+    records(f, r);
     for (int q = 0; q < 4; ++q) {
       double* a = at(job.force, 8, job.i[k + q]);
       Simd::store(a, Simd::load(a) + r[q]);
       Simd::store(a + 4, Simd::load(a + 4) + r[4 + q]);
       double* b = at(job.force, 8, job.j[k + q]);
-      Simd::store(b, Simd::load(b) + r[q] * sign);
+      Simd::store(b, combine(r[q], sign, Simd::load(b)));
       Simd::store(b + 4, Simd::load(b + 4) + r[4 + q]);
     }
   }

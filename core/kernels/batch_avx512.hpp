@@ -154,28 +154,30 @@ struct BatchAvx512 {
   }
 
   template <Damping D, int Dim>
-  BARCHAN_INLINE void respond_with_spring(const PairJob& job, std::int64_t k,
-                                          const LawConstants<Simd>& c,
-                                          const PairState<Simd, Dim>& p, Real dt,
-                                          PairForce<Simd, Dim>& f) {
+  BARCHAN_INLINE Simd::Mask respond_with_spring(const PairJob& job, std::int64_t k,
+                                                const LawConstants<Simd>& c,
+                                                const PairState<Simd, Dim>& p, Real dt,
+                                                PairForce<Simd, Dim>& f) {
     if constexpr (Dim == 2) {
       Real s = Simd::load(job.spring + k);
-      respond<Simd, D>(c, p, dt, s, f);
+      const auto touching = respond<Simd, D>(c, p, dt, s, f);
       Simd::store(job.spring + k, s);
+      return touching;
     } else {
       double* h = job.spring + 3 * k;
       Real s[3] = {Simd::load(h), Simd::load(h + 8), Simd::load(h + 16)};
-      respond<Simd, D>(c, p, dt, s, f);
+      const auto touching = respond<Simd, D>(c, p, dt, s, f);
       for (int e = 0; e < 3; ++e) Simd::store(h + 8 * e, s[e]);
+      return touching;
     }
   }
 
   /// Force records [fx fy ft size] of eight pairs, pair q in r[q].
-  BARCHAN_INLINE void records(const PairForce<Simd, 2>& f, Real size, __m256d (&r)[8]) {
+  BARCHAN_INLINE void records(const PairForce<Simd, 2>& f, __m256d (&r)[8]) {
     const __m512d lo = _mm512_unpacklo_pd(__m512d(f.fx), __m512d(f.fy)),
-                  tl = _mm512_unpacklo_pd(__m512d(f.ft), __m512d(size));
+                  tl = _mm512_unpacklo_pd(__m512d(f.ft), __m512d(f.size));
     const __m512d hi = _mm512_unpackhi_pd(__m512d(f.fx), __m512d(f.fy)),
-                  th = _mm512_unpackhi_pd(__m512d(f.ft), __m512d(size));
+                  th = _mm512_unpackhi_pd(__m512d(f.ft), __m512d(f.size));
     const __m512i a = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11),
                   b = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
     const __m512d o02 = _mm512_permutex2var_pd(lo, a, tl), o13 = _mm512_permutex2var_pd(hi, a, th);
@@ -187,20 +189,19 @@ struct BatchAvx512 {
   }
 
   /// Force records [fx fy fz size | tx ty tz 0] of eight pairs.
-  BARCHAN_INLINE void records(const PairForce<Simd, 3>& f, Real size, __m512d (&r)[8]) {
+  BARCHAN_INLINE void records(const PairForce<Simd, 3>& f, __m512d (&r)[8]) {
     const Real zero = Simd::set(0.0);
-    const __m512d rows[8] = {__m512d(f.fx), __m512d(f.fy), __m512d(f.fz), __m512d(size),
+    const __m512d rows[8] = {__m512d(f.fx), __m512d(f.fy), __m512d(f.fz), __m512d(f.size),
                              __m512d(f.tx), __m512d(f.ty), __m512d(f.tz), __m512d(zero)};
     Real o[8];
     transpose(rows, o);
     for (int q = 0; q < 8; ++q) r[q] = __m512d(o[q]);
   }
 
-  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f,
-                              Real size) {
+  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f) {
     const __m256d sign = _mm256_setr_pd(-1, -1, 1, 1);
     __m256d r[8];
-    records(f, size, r);
+    records(f, r);
     for (int q = 0; q < 8; ++q) {
       double* a = job.force + 4 * wide(job.i[k + q]);
       double* b = job.force + 4 * wide(job.j[k + q]);
@@ -209,11 +210,10 @@ struct BatchAvx512 {
     }
   }
 
-  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f,
-                              Real size) {
+  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f) {
     const __m512d sign = _mm512_setr_pd(-1, -1, -1, 1, 1, 1, 1, 1);
     __m512d r[8];
-    records(f, size, r);
+    records(f, r);
     for (int q = 0; q < 8; ++q) {
       double* a = job.force + 8 * wide(job.i[k + q]);
       double* b = job.force + 8 * wide(job.j[k + q]);

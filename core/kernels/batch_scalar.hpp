@@ -49,19 +49,20 @@ struct BatchScalar {
   }
 
   template <Damping D, int Dim>
-  [[gnu::always_inline]] static void respond_with_spring(const PairJob& job, std::int64_t k,
-                                                         const LawConstants<Simd>& c,
-                                                         const PairState<Simd, Dim>& p, double dt,
-                                                         PairForce<Simd, Dim>& f) {
+  [[gnu::always_inline]] static Simd::Mask respond_with_spring(const PairJob& job, std::int64_t k,
+                                                               const LawConstants<Simd>& c,
+                                                               const PairState<Simd, Dim>& p,
+                                                               double dt, PairForce<Simd, Dim>& f) {
     if constexpr (Dim == 2) {
-      respond<Simd, D>(c, p, dt, job.spring[k], f);
+      return respond<Simd, D>(c, p, dt, job.spring[k], f);
     } else {
       double* s = job.spring + 24 * (k / 8) + k % 8;
       double t[3] = {s[0], s[8], s[16]};
-      respond<Simd, D>(c, p, dt, t, f);
+      const bool touching = respond<Simd, D>(c, p, dt, t, f);
       s[0] = t[0];
       s[8] = t[1];
       s[16] = t[2];
+      return touching;
     }
   }
 
@@ -74,22 +75,20 @@ struct BatchScalar {
     __builtin_memcpy(to, &sum, sizeof sum);
   }
 
-  static void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f,
-                      double size) {
+  static void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f) {
     double* a = job.force + 4 * static_cast<std::int64_t>(job.i[k]);
     double* b = job.force + 4 * static_cast<std::int64_t>(job.j[k]);
-    const Two force{f.fx, f.fy}, rest{f.ft, size};
+    const Two force{f.fx, f.fy}, rest{f.ft, f.size};
     add(a, force);
     add(a + 2, rest);
     add(b, -force);
     add(b + 2, rest);
   }
 
-  static void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f,
-                      double size) {
+  static void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f) {
     double* a = job.force + 8 * static_cast<std::int64_t>(job.i[k]);
     double* b = job.force + 8 * static_cast<std::int64_t>(job.j[k]);
-    const Two force{f.fx, f.fy}, above{f.fz, size}, below{-f.fz, size}, torque{f.tx, f.ty},
+    const Two force{f.fx, f.fy}, above{f.fz, f.size}, below{-f.fz, f.size}, torque{f.tx, f.ty},
         rest{f.tz, 0.0};
     add(a, force);
     add(a + 2, above);

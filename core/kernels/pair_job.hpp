@@ -24,7 +24,6 @@ struct PairJob {
   double* spring = nullptr;            ///< per batch: component by component, eight lanes each
   std::int64_t begin = 0, end = 0;
   double dt = 0.0;
-  double rounder = 0.0;  ///< ForceGrain::rounder()
   PeriodicBox box;
   LawView laws;
 };

@@ -17,28 +17,27 @@ template <class S>
   return d - S::set(length) * S::round(d * S::set(inverse));
 }
 
-/// Rounds a contribution to the grain, so that sums of it are exact (force_grain.hpp): the addition
-/// cuts off what is below the grain, the subtraction gives back what is left. Zero becomes +0.
-/// @return |fx| + |fy| (+ |fz|): no component of force or torque is larger
+/// What is added to rows: zero where nothing touches; elsewhere with the last bit set, so that no
+/// sum with a multiple of the grain is a tie (force_grain.hpp).
 template <class S>
-[[gnu::always_inline]] inline typename S::Real round_to_grain(PairForce<S, 2>& f,
-                                                              typename S::Real rounder) {
-  f.fx = (f.fx + rounder) - rounder;
-  f.fy = (f.fy + rounder) - rounder;
-  f.ft = (f.ft + rounder) - rounder;
-  return S::abs(f.fx) + S::abs(f.fy);
+[[gnu::always_inline]] inline void make_contribution(typename S::Mask touching,
+                                                     PairForce<S, 2>& f) {
+  f.fx = S::where(touching, S::odd(f.fx));
+  f.fy = S::where(touching, S::odd(f.fy));
+  f.ft = S::where(touching, S::odd(f.ft));
+  f.size = S::where(touching, f.size);
 }
 
 template <class S>
-[[gnu::always_inline]] inline typename S::Real round_to_grain(PairForce<S, 3>& f,
-                                                              typename S::Real rounder) {
-  f.fx = (f.fx + rounder) - rounder;
-  f.fy = (f.fy + rounder) - rounder;
-  f.fz = (f.fz + rounder) - rounder;
-  f.tx = (f.tx + rounder) - rounder;
-  f.ty = (f.ty + rounder) - rounder;
-  f.tz = (f.tz + rounder) - rounder;
-  return (S::abs(f.fx) + S::abs(f.fy)) + S::abs(f.fz);
+[[gnu::always_inline]] inline void make_contribution(typename S::Mask touching,
+                                                     PairForce<S, 3>& f) {
+  f.fx = S::where(touching, S::odd(f.fx));
+  f.fy = S::where(touching, S::odd(f.fy));
+  f.fz = S::where(touching, S::odd(f.fz));
+  f.tx = S::where(touching, S::odd(f.tx));
+  f.ty = S::where(touching, S::odd(f.ty));
+  f.tz = S::where(touching, S::odd(f.tz));
+  f.size = S::where(touching, f.size);
 }
 
 template <class B, int Dim, int F>
@@ -48,7 +47,7 @@ void run_pairs(const PairJob& given) {
   using S = typename B::Simd;
   constexpr auto kDamped = static_cast<Damping>(F & kDamping);
   constexpr bool kUniform = (F & kOneLaw) != 0;
-  const auto dt = S::set(job.dt), rounder = S::set(job.rounder);
+  const auto dt = S::set(job.dt);
   const auto tables = B::template tables<kDamped, kUniform>(job.laws);
   for (std::int64_t k = job.begin; k < job.end; k += S::kWidth) {
     PairState<S, Dim> pair;
@@ -61,9 +60,11 @@ void run_pairs(const PairJob& given) {
     }
     const auto& constants = B::template constants<kDamped, kUniform>(tables, job.code + k);
     PairForce<S, Dim> force;
-    B::template respond_with_spring<kDamped, Dim>(job, k, constants, pair, dt, force);
-    const auto size = round_to_grain<S>(force, rounder);
-    B::scatter(job, k, force, size);
+    const auto touching =
+        B::template respond_with_spring<kDamped, Dim>(job, k, constants, pair, dt, force);
+    if (!S::any(touching)) continue;
+    make_contribution<S>(touching, force);
+    B::scatter(job, k, force);
   }
 }
 

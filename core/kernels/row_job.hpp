@@ -6,7 +6,7 @@
 
 namespace barchan {
 
-/// Rows [begin, end) whose forces are complete: kick, drift, forces back to zero.
+/// Rows [begin, end) whose forces are complete: kick, drift, forces back to where they start from.
 ///
 ///   dv  = F·kick/m + g·kick
 ///   dv −= alpha·|dv|·sign(v)      Cundall's local damping, of spins too
@@ -25,28 +25,19 @@ struct RowJob {
   double local_damping = 0.0;
   double most_speed =
       std::numeric_limits<double>::infinity();  ///< of a component of velocity [m/s]
-  double most_force = std::numeric_limits<double>::infinity();  ///< ForceGrain::most() [N]
-  const std::int64_t* id = nullptr;                             ///< of every row
-};
-
-/// A row whose sum of forces was too large to be exact.
-struct Overload {
-  std::int64_t id = 0;  ///< 0: there was none; of several the lowest
-  double force = 0.0;   ///< sum of the sizes of all contributions [N]
-  void add(const Overload& other) {
-    if (other.id != 0 && (id == 0 || other.id < id)) *this = other;
-  }
+  double rounder = 0.0;   ///< ForceGrain::rounder(): what sums of forces start from [N]
+  bool is_plain = false;  ///< the sums are forces already: the rounder is taken out
 };
 
 /// How fast rows drifted.
 struct RowSpeeds {
   double top = 0.0;        ///< upper bound [m/s]; 3D, where lists of near pairs rest on it
   bool is_beyond = false;  ///< some component is beyond the job's most_speed, or no number
-  Overload overload;
+  double top_force = 0.0;  ///< largest sum of the sizes of a row's contact forces [N]
   void add(const RowSpeeds& other) {
     top = std::max(top, other.top);
     is_beyond = is_beyond || other.is_beyond;
-    overload.add(other.overload);
+    top_force = std::max(top_force, other.top_force);
   }
 };
 

@@ -8,7 +8,8 @@
 
 namespace barchan::kernels {
 
-// Q holds half a record: four doubles. A fixed particle has 1/m = 0 and feels no gravity either.
+// Q holds half a record: four doubles. Sums of forces start from the rounder (force_grain.hpp), which
+// is taken out first; the last lane sums sizes. A fixed particle has 1/m = 0 and feels no gravity either.
 
 template <class Q, bool Damped>
 [[gnu::always_inline]] inline typename Q::Real kicked(typename Q::Real v, typename Q::Real dv,
@@ -26,13 +27,9 @@ RowSpeeds advance_rows(const RowJob& job) {
   const double most = job.most_speed, any = std::numeric_limits<double>::infinity();
   const auto limit = Q::of(most, most, Dim == 3 ? most : any, any);
   auto fast = Q::beyond(zero, zero);
-  const auto force_limit = Q::of(any, any, any, job.most_force);
-  Overload overload;
-  const auto watch = [&](typename Q::Real force, std::int32_t i, const double* record) {
-    if (__builtin_expect(Q::has_any(Q::beyond(force, force_limit)), 0) &&
-        record[3] > job.most_force)
-      overload.add({job.id[i], record[3]});
-  };
+  const auto start = Q::of(job.rounder, job.rounder, job.rounder, 0.0),
+             rounder = job.is_plain ? zero : start;
+  auto top_force = zero;
   if constexpr (Dim == 2) {
     const auto gain = Q::of(k, k, turn, 0.0), drift = Q::of(job.dt, job.dt, 0.0, 0.0);
     const auto gravity = Q::of(job.gravity[0] * k, job.gravity[1] * k, 0.0, 0.0);
@@ -40,14 +37,14 @@ RowSpeeds advance_rows(const RowJob& job) {
       double *x = job.motion + 8 * static_cast<std::int64_t>(i),
              *f = job.force + 4 * static_cast<std::int64_t>(i);
       const auto v = Q::load(x + 4), im = Q::last(v);
-      const auto force = Q::load(f);
-      watch(force, i, f);
-      const auto dv = force * (im * gain) + Q::where_positive(im, gravity);
+      const auto sum = Q::load(f);
+      top_force = Q::max(top_force, sum);
+      const auto dv = (sum - rounder) * (im * gain) + Q::where_positive(im, gravity);
       const auto w = kicked<Q, Damped>(v, dv, alpha);
       fast = Q::either(fast, Q::beyond(w, limit));
       Q::store(x + 4, w);
       Q::store(x, Q::load(x) + drift * w);
-      Q::store(f, zero);
+      Q::store(f, start);
     }
   } else {
     const auto gain = Q::of(k, k, k, 0.0), drift = Q::of(job.dt, job.dt, job.dt, 0.0);
@@ -58,24 +55,25 @@ RowSpeeds advance_rows(const RowJob& job) {
              *f = job.force + 8 * static_cast<std::int64_t>(i);
       double* u = job.spin + 4 * static_cast<std::int64_t>(i);
       const auto v = Q::load(x + 4), im = Q::last(v);
-      const auto force = Q::load(f);
-      watch(force, i, f);
-      const auto dv = force * (im * gain) + Q::where_positive(im, gravity);
+      const auto sum = Q::load(f);
+      top_force = Q::max(top_force, sum);
+      const auto dv = (sum - rounder) * (im * gain) + Q::where_positive(im, gravity);
       const auto w = kicked<Q, Damped>(v, dv, alpha);
       fast = Q::either(fast, Q::beyond(w, limit));
       Q::store(x + 4, w);
       top = Q::max(top, Q::abs(w));
       Q::store(x, Q::load(x) + drift * w);
       const auto s = Q::load(u);
-      Q::store(u, kicked<Q, Damped>(s, Q::load(f + 4) * (im * twist), alpha));
-      Q::store(f, zero);
-      Q::store(f + 4, zero);
+      Q::store(u, kicked<Q, Damped>(s, (Q::load(f + 4) - rounder) * (im * twist), alpha));
+      Q::store(f, start);
+      Q::store(f + 4, start);
     }
   }
-  alignas(32) double speed[4];
+  alignas(32) double speed[4], force[4];
   Q::store(speed, top);
+  Q::store(force, top_force);
   return {std::sqrt(speed[0] * speed[0] + speed[1] * speed[1] + speed[2] * speed[2]),
-          Q::has_any(fast), overload};
+          Q::has_any(fast), force[3]};
 }
 
 template <class Q>

@@ -29,6 +29,10 @@ struct Avx2 {
   BARCHAN_INLINE Real select(Mask m, Real a, Real b) {
     return Real(_mm256_blendv_pd(__m256d(b), __m256d(a), m));
   }
+  BARCHAN_INLINE Real where(Mask m, Real a) { return Real(_mm256_and_pd(m, __m256d(a))); }
+  BARCHAN_INLINE Real odd(Real a) {
+    return Real(_mm256_or_pd(__m256d(a), _mm256_castsi256_pd(_mm256_set1_epi64x(1))));
+  }
   BARCHAN_INLINE bool any(Mask m) { return _mm256_movemask_pd(m) != 0; }
   BARCHAN_INLINE unsigned bits(Mask m) { return static_cast<unsigned>(_mm256_movemask_pd(m)); }
   BARCHAN_INLINE int write_set(unsigned bits, int first, int* to) {

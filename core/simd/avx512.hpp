@@ -28,6 +28,13 @@ struct Avx512 {
   BARCHAN_INLINE Real select(Mask m, Real a, Real b) {
     return Real(_mm512_mask_blend_pd(m.bits, __m512d(b), __m512d(a)));
   }
+  BARCHAN_INLINE Real where(Mask m, Real a) {
+    return Real(_mm512_maskz_mov_pd(m.bits, __m512d(a)));
+  }
+  BARCHAN_INLINE Real odd(Real a) {
+    return Real(_mm512_castsi512_pd(
+        _mm512_or_epi64(_mm512_castpd_si512(__m512d(a)), _mm512_set1_epi64(1))));
+  }
   BARCHAN_INLINE bool any(Mask m) { return m.bits != 0; }
   BARCHAN_INLINE unsigned bits(Mask m) { return m.bits; }
   BARCHAN_INLINE int write_set(unsigned bits, int first, int* to) {

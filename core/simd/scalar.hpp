@@ -1,6 +1,8 @@
 #pragma once
 
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 namespace barchan::simd {
 
@@ -19,6 +21,10 @@ struct Scalar {
   static Real round(Real a) { return __builtin_rint(a); }
   static Mask less(Real a, Real b) { return a < b; }
   static Real select(Mask m, Real a, Real b) { return m ? a : b; }
+  /// a where m, else +0.
+  static Real where(Mask m, Real a) { return m ? a : 0.0; }
+  /// With the last bit set.
+  static Real odd(Real a) { return std::bit_cast<double>(std::bit_cast<std::uint64_t>(a) | 1U); }
   static bool any(Mask m) { return m; }
   static unsigned bits(Mask m) { return m ? 1U : 0U; }
   /// Writes first + q for every bit q that is set, and returns how many; up to kWidth are written
