@@ -144,18 +144,18 @@ double default_skin(const Model& model, const ParticleSet& set) {
 
 std::vector<std::string> speed_warnings(const Model& model, const ParticleSet& set) {
   std::vector<std::string> warnings;
-  const auto [start, fall, smallest] = speeds_of(model, set);
-  if (smallest == nullptr) return warnings;
+  const Speeds speeds = speeds_of(model, set);
+  if (speeds.smallest == nullptr) return warnings;
   const double skin = model.search.skin.value_or(default_skin(model, set));
   const auto warn = [&](double speed, const auto& who) {
-    const std::string what = consequence(model, speed, skin, *smallest);
+    const std::string what = consequence(model, speed, skin, *speeds.smallest);
     if (!what.empty()) warnings.push_back(who() + ", " + what);
   };
-  warn(start.speed, [&start = start] {
+  warn(speeds.start.speed, [&start = speeds.start] {
     return fmt::format("particle {} starts at {:.3g} m/s", start.particle->id, start.speed);
   });
   if (warnings.empty())
-    warn(fall.speed, [&fall = fall] {
+    warn(speeds.fall.speed, [&fall = speeds.fall] {
       return fmt::format(
           "particle {}, if it falls to the end of the domain ({:.3g} m), gets {:.3g} m/s",
           fall.particle->id, fall.height, fall.speed);

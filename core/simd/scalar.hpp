@@ -1,8 +1,6 @@
 #pragma once
 
-#include <bit>
 #include <cmath>
-#include <cstdint>
 
 namespace barchan::simd {
 
@@ -23,8 +21,12 @@ struct Scalar {
   static Real select(Mask m, Real a, Real b) { return m ? a : b; }
   /// a where m, else +0.
   static Real where(Mask m, Real a) { return m ? a : 0.0; }
-  /// With the last bit set.
-  static Real odd(Real a) { return std::bit_cast<double>(std::bit_cast<std::uint64_t>(a) | 1U); }
+  /// With the last bit set; in a register of numbers, since the way to one of integers is long.
+  static Real odd(Real a) {
+    using Pair = double __attribute__((vector_size(16)));
+    using Bits = long long __attribute__((vector_size(16)));
+    return Pair(Bits(Pair{a, 0.0}) | Bits{1, 0})[0];
+  }
   static bool any(Mask m) { return m; }
   static unsigned bits(Mask m) { return m ? 1U : 0U; }
   /// Writes first + q for every bit q that is set, and returns how many; up to kWidth are written
