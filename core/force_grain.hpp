@@ -6,14 +6,14 @@
 
 namespace barchan {
 
-/// The unit of all sums of contact forces. A sum starts from the rounder M, whose neighbours are one
-/// grain away, so that every addition rounds what it adds to a multiple of the grain:
+/// The unit of all sums of contact forces. A sum starts from the rounder M, whose neighbours are
+/// one grain away, so that every addition rounds what it adds to a multiple of the grain:
 ///
 ///   M + f1 + f2 + …  =  M + r(f1) + r(f2) + …,   M = 1.5·2^52·size,   F = the sum − M, exactly
 ///
 /// r does not depend on what is in the sum, unless f is a tie, half-way between two multiples; so
-/// the last bit of every f is set, which no tie has. A sum that rounds nothing else has no order, and
-/// no list, cut, thread or schedule is in its bits.
+/// the last bit of every f is set, which no tie has. A sum that rounds nothing else has no order,
+/// and no list, cut, thread or schedule is in its bits.
 ///
 /// This holds while all partial sums of f stay within ±2^51·size. That follows from a bound on the
 /// sum of the sizes of all contributions to a row, which is summed along with them and watched in

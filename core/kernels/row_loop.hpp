@@ -8,8 +8,9 @@
 
 namespace barchan::kernels {
 
-// Q holds half a record: four doubles. Sums of forces start from the rounder (force_grain.hpp), which
-// is taken out first; the last lane sums sizes. A fixed particle has 1/m = 0 and feels no gravity either.
+// Q holds half a record: four doubles. Sums of forces start from the rounder (force_grain.hpp),
+// which is taken out first; the last lane sums sizes. A fixed particle has 1/m = 0 and feels no
+// gravity either.
 
 template <class Q, bool Damped>
 [[gnu::always_inline]] inline typename Q::Real kicked(typename Q::Real v, typename Q::Real dv,

@@ -7,8 +7,9 @@
 namespace barchan::simd {
 
 /// While it lives, this thread takes numbers below the smallest normal one for zero. Contributions
-/// to sums have their last bit set (kernels/pair_loop.hpp), which makes such numbers of zeros, and a
-/// fused operation on one takes a hundred times as long. No sum that starts from a rounder notices.
+/// to sums have their last bit set (kernels/pair_loop.hpp), which makes such numbers of zeros, and
+/// a fused operation on one takes a hundred times as long. No sum that starts from a rounder
+/// notices.
 class DenormalsAreZero {
  public:
 #if defined(__SSE2__)
