@@ -77,6 +77,39 @@ TEST(Bonds, PullTogetherWhatIsTooFarApart) {
   expect_pulls_together<3>();
 }
 
+template <int Dim>
+void expect_the_short_way() {
+  ParticleStore<Dim> store = row_of<Dim>(2, 7.9);  // 2.1 the other way around
+  PeriodicBox box;
+  box.length[0] = 10.0;
+  box.inverse[0] = 0.1;
+  BondSet<Dim> bonds;
+  bonds.add(bond_of<Dim>(1, 2, 2.0));
+  bonds.resolve(store);
+  const std::vector<BondLaw> laws{elastic()};
+
+  EXPECT_TRUE(bonds.compute(BondSet<Dim>::Owned, store, laws, box, 1e-3).empty());
+  bonds.add_to_rows(store, 0, 2);
+
+  const double expected = bond_section<Dim>(laws[0], 2.0, 1.0, 1.0).kn * 0.1;
+  EXPECT_NEAR(store.f(0)[0], -expected, 1e-9 * expected);
+  EXPECT_EQ(store.f(1)[0], -store.f(0)[0]);
+  EXPECT_NEAR(bonds.energy(0, store, laws, box), 0.5 * expected * 0.1, 1e-9);
+}
+
+TEST(Bonds, GoTheShortWayAroundAPeriodicBox) {
+  expect_the_short_way<2>();
+  expect_the_short_way<3>();
+}
+
+TEST(Bonds, HaveTheLengthOfTheirFileAndElseThatOfTheStart) {
+  BondData data{1, 2, 0};
+  EXPECT_EQ(barchan::bond_of<2>(data, 0.2).length, 0.2);
+  data.length = 0.3;
+  EXPECT_EQ(barchan::bond_of<2>(data, 0.2).length, 0.3);
+  EXPECT_EQ(barchan::bond_of<3>(data, 0.2).length, 0.3);
+}
+
 TEST(Bonds, BreakAtTheirTensileStrengthAndStayBroken) {
   ParticleStore<2> store = row_of<2>(2, 2.1);
   BondSet<2> bonds;

@@ -185,6 +185,28 @@ TEST(Checkpoint, DetectsEveryFlippedBit) {
   EXPECT_NO_THROW((void)read_all(checkpoint));
 }
 
+TEST(Checkpoint, RefusesAnotherVersionByItsNumber) {
+  const Folder folder;
+  auto bytes = bytes_of(write_some(folder.path()) + "/" + rank_file_name(0));
+  std::uint32_t version = 0, num_blocks = 0;
+  std::memcpy(&version, &bytes[8], sizeof version);
+  std::memcpy(&num_blocks, &bytes[32], sizeof num_blocks);
+  ++version;
+  std::memcpy(&bytes[8], &version, sizeof version);
+  std::fill_n(&bytes[56], 8, std::byte{0});
+  const std::uint64_t hash = XXH3_64bits(bytes.data(), 64 + 32 * std::size_t{num_blocks});
+  std::memcpy(&bytes[56], &hash, sizeof hash);  // sound, but for the version
+
+  try {
+    const RankFileView view(bytes, "rank");
+    FAIL() << "is read";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("format version " + std::to_string(version)),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(Checkpoint, DetectsEveryCutAndEveryTail) {
   const Folder folder;
   const std::string checkpoint = write_some(folder.path());

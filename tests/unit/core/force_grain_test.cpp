@@ -78,6 +78,26 @@ TEST(ForceGrain, HasRoomForAFallThroughTheWholeDomain) {
   EXPECT_GE(force_grain(model, set).most(), 650.0 * std::sqrt(2.0 * 9.81 * 4.0));
 }
 
+TEST(ForceGrain, HasRoomForAWallThatComes) {
+  Model model = soil();
+  model.walls.resize(1);
+  model.walls[0].velocity = Vec3(300.0, 400.0, 0.0);
+  EXPECT_GE(force_grain(model, disks(0.05)).most(), 650.0 * 2.0 * 500.0);
+}
+
+TEST(ForceGrain, HasRoomForHalfOfTheLargestForceFromEveryNeighbour) {
+  for (const int dimension : {2, 3}) {
+    Model model = soil();
+    model.dimension = dimension;
+    model.contacts.constants[0].cn = {};
+    const double force = 55e3 * model.limits.overlap_error * 0.05,
+                 neighbours = dimension == 2 ? 6 : 12;
+
+    EXPECT_GE(force_grain(model, disks(0.05)).most(), neighbours * 0.5 * 1.5 * force);
+    EXPECT_LT(force_grain(model, disks(0.05)).most(), 2.0 * neighbours * 0.5 * 1.5 * force);
+  }
+}
+
 TEST(ForceGrain, IsCoarserForStifferLawsLargerGrainsAndFasterOnes) {
   const double size = force_grain(soil(), disks(0.05)).size;
   Model stiff = soil(), deep = soil(), free = soil();

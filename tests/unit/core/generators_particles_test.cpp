@@ -288,6 +288,18 @@ TEST(CheckParticles, RefusesGrossOverlapsUnlessBondedOrFixed) {
   EXPECT_NO_THROW(check_particles(model, pair));
 }
 
+TEST(CheckParticles, HoldsAnOverlapAgainstTheSmallerRadius) {
+  ParticleSet pair;  // the large one would bear it
+  pair.particles = {{1, 0, 1.0, 1, {5, 5, 0}, Vec3::Zero(), Vec3::Zero()},
+                    {2, 0, 0.1, 1, {6.02, 5, 0}, Vec3::Zero(), Vec3::Zero()}};
+
+  EXPECT_NE(
+      message_of([&] { check_particles(model_of(2), pair); }).find("by 80 % of the smaller radius"),
+      std::string::npos);
+  pair.particles[1].position[0] = 6.06;
+  EXPECT_NO_THROW(check_particles(model_of(2), pair));
+}
+
 TEST(CheckParticles, RefusesAVelocityOfWhatIsFixed) {
   constexpr double kEndless = std::numeric_limits<double>::infinity();
   ParticleSource source = lattice(Arrangement::Square, {1, 1, 0}, {3, 3, 0});

@@ -4,6 +4,8 @@
 #include <barchan/core/error.hpp>
 #include <barchan/core/io/particle_file.hpp>
 
+#include <support/temporary_folder.hpp>
+
 namespace barchan {
 namespace {
 
@@ -43,6 +45,19 @@ TEST(LammpsData, HasBondsInStyleBpmSphere) {
   EXPECT_EQ(file.bonds[0].law, 0);
   EXPECT_EQ(file.bonds[0].length, 0.0);
   EXPECT_TRUE(file.notes.empty());
+}
+
+TEST(LammpsData, OfDisksHasTheDensityOfSpheresOfTheSameMass) {
+  const test::TemporaryFolder folder;
+  const std::vector<ParticleData> disks{
+      {1, 0, 0.05, 126.0, {0.2, 0.5, 0}, Vec3::Zero(), Vec3::Zero()}};
+  const Box box{Vec3(0, 0, 0), Vec3(1, 1, 0)};
+  write_particles_lammps(folder.at("spheres.data"), disks, {}, {box, 2, true, false});
+  write_particles_lammps(folder.at("disks.data"), disks, {}, {box, 2, false, false});
+
+  EXPECT_NEAR(read_particles(folder.at("spheres.data")).particles[0].density,
+              126.0 / (4.0 / 3.0 * 0.05), 1e-9);
+  EXPECT_EQ(read_particles(folder.at("disks.data")).particles[0].density, 126.0);
 }
 
 TEST(LammpsData, MayLackItsTitle) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <filesystem>
 #include <random>
 
@@ -96,6 +97,33 @@ TEST(Vtp, IsWellFormedWithOneVertexPerPoint) {
   EXPECT_EQ(count_tags(path, "DataArray"), 2 + 4 + 1 + 2);
   EXPECT_NE(read_text_file(path).find("NumberOfPoints=\"3\" NumberOfVerts=\"3\""),
             std::string::npos);
+}
+
+/// The numbers of an array that read_vtp has no use for.
+std::vector<std::int64_t> integers_of(const std::string& path, const std::string& name) {
+  const std::string text = read_text_file(path);
+  const std::size_t begin = text.find('>', text.find("Name=\"" + name + "\"")) + 1;
+  const std::string bytes =
+      decode_base64(std::string_view(text).substr(begin, text.find('<', begin) - begin)).value();
+  std::vector<std::int64_t> numbers(bytes.size() / sizeof(std::int64_t));
+  std::memcpy(numbers.data(), bytes.data(), bytes.size());
+  EXPECT_EQ(numbers.at(0), static_cast<std::int64_t>(bytes.size() - sizeof numbers[0])) << name;
+  numbers.erase(numbers.begin());
+  return numbers;
+}
+
+TEST(Vtp, CellsEndWhereTheirOffsetsSay) {
+  const std::string path = temporary("cells.vtp");
+  const Snapshot snapshot;
+  write_vtp(path, snapshot.arrays());
+
+  EXPECT_EQ(integers_of(path, "connectivity"), (std::vector<std::int64_t>{0, 1, 2}));
+  EXPECT_EQ(integers_of(path, "offsets"), (std::vector<std::int64_t>{1, 2, 3}));
+
+  const std::vector<double> ends(12);  // of two lines
+  write_vtp(path, {0, 0.0, ends, {}, true});
+  EXPECT_EQ(integers_of(path, "connectivity"), (std::vector<std::int64_t>{0, 1, 2, 3}));
+  EXPECT_EQ(integers_of(path, "offsets"), (std::vector<std::int64_t>{2, 4}));
 }
 
 TEST(Vtp, MayBeEmpty) {

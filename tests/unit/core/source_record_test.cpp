@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include <barchan/core/checkpoint/manifest.hpp>
 #include <barchan/core/deck/deck.hpp>
 #include <barchan/core/generators/make_particles.hpp>
@@ -67,6 +69,39 @@ TEST(SourceRecord, TakesOtherRoundingOfAGeneratorForTheSame) {
   saved[1].hash += 1;
   EXPECT_EQ(source_differences(saved, other),
             "[[particles]] 2 (ring, line 37): the contents of \"some.csv\" differ");
+}
+
+/// The hash of a source of two particles and a bond, changed in one way.
+std::uint64_t hash_with(const std::function<void(ParticleSet&)>& change) {
+  ParticleSet set;
+  set.particles.resize(2);
+  set.particles[0].id = 1, set.particles[1].id = 2;
+  set.bonds = {{1, 2, 0}};
+  change(set);
+  const std::vector<ParticleSource> sources(1);
+  return make_records(sources, set, std::vector<std::size_t>{0, 2})[0].hash;
+}
+
+TEST(SourceRecord, SeesEveryNumberOfAParticleAndOfABond) {
+  const std::vector<std::function<void(ParticleSet&)>> changes{
+      [](ParticleSet&) {},
+      [](ParticleSet& s) { s.particles[1].id = 3; },
+      [](ParticleSet& s) { s.particles[1].type = 1; },
+      [](ParticleSet& s) { s.particles[1].radius = 1.0; },
+      [](ParticleSet& s) { s.particles[1].density = 1.0; },
+      [](ParticleSet& s) { s.particles[1].position[2] = 1.0; },
+      [](ParticleSet& s) { s.particles[1].velocity[1] = 1.0; },
+      [](ParticleSet& s) { s.particles[1].omega[0] = 1.0; },
+      [](ParticleSet& s) { s.particles[1].fixed = true; },
+      [](ParticleSet& s) { s.bonds[0].id_b = 3; },
+      [](ParticleSet& s) { s.bonds[0].law = 1; },
+      [](ParticleSet& s) { s.bonds.clear(); }};
+  std::vector<std::uint64_t> hashes;
+  for (const auto& change : changes) {
+    hashes.push_back(hash_with(change));
+    for (std::size_t n = 0; n + 1 < hashes.size(); ++n)
+      EXPECT_NE(hashes[n], hashes.back()) << n << " and " << hashes.size() - 1;
+  }
 }
 
 TEST(SourceRecord, TravelsInAManifest) {
