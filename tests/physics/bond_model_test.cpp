@@ -227,13 +227,13 @@ TEST_P(BondedChain, MovesAsAnIndependentModelOfBeams) {
 TEST_P(BondedChain, KeepsItsEnergyWhereNothingDamps) {
   auto chain = chain_of(GetParam());
   for (ParticleData& p : chain) p.omega *= 20.0;  // so that twist and bending weigh
-  auto simulation = bonded(GetParam(), 2e-5, 0.0, {chain, {{1, 2, 0}, {2, 3, 0}, {3, 4, 0}}});
-  simulation.run(10);
+  auto simulation = bonded(GetParam(), 1e-5, 0.0, {chain, {{1, 2, 0}, {2, 3, 0}, {3, 4, 0}}});
+  simulation.run(20);
   const double energy = test::total_energy(simulation);
   double elastic = 0.0;
 
   for (int sample = 0; sample < 30; ++sample) {
-    simulation.run(37);
+    simulation.run(74);
     elastic = std::max(elastic, simulation.measure().elastic.value());
 
     EXPECT_NEAR(test::total_energy(simulation), energy, 2e-3 * energy) << sample;
