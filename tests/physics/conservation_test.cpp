@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <barchan/core/mass.hpp>
+
 #include "physics_case.hpp"
 
 namespace barchan {
@@ -87,6 +89,69 @@ TEST_P(Gas, KeepsItsMomentumToRoundingWithDampingAndFriction) {
   for (int c = 0; c < GetParam(); ++c) {
     const double drift = std::fabs(end.momentum[c].value() - start.momentum[c].value());
     EXPECT_LT(drift, 20.0 * std::numeric_limits<double>::epsilon() * sum) << "component " << c;
+  }
+}
+
+/// A particle of radius 0.05 m that rests on a fixed one or on a wall, but moves along it.
+Simulation make_sticking(int dimension, bool is_on_wall) {
+  const double density = dimension == 2 ? 1000.0 : 15000.0;  // about the same mass
+  Model model =
+      parse_deck(fmt::format(R"(
+dimension = {0}
+gravity = [0.0, -9.81{1}]
+[domain]
+lo = [-1.0, -1.0{2}]
+hi = [1.0, 1.0{3}]
+[time]
+step = 1e-5
+steps = 1000000
+[[material]]
+name = "m"
+density = 1000.0
+normal_stiffness = 1e5
+tangential_stiffness = 5e4
+friction = 0.9
+[[wall]]
+name = "floor"
+kind = "plane"
+point = [0.0, -0.5{1}]
+normal = [0.0, 1.0{1}]
+material = "m"
+[[particles]]
+kind = "list"
+material = "m"
+particle = [{{ position = [0.0, 0.0{1}], radius = 0.05 }}]
+)",
+                             dimension, dimension == 2 ? "" : ", 0.0",
+                             dimension == 2 ? "" : ", -1.0", dimension == 2 ? "" : ", 1.0"),
+                 "sticking.toml")
+          .model;
+  ParticleData p{1, 0, 0.05, density, Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), false};
+  ParticleData q = p;
+  q.id = 2, q.fixed = true;
+  p.position[1] = (is_on_wall ? -0.45 : 0.1) - mass_of(p, dimension) * 9.81 / 1e5;
+  p.velocity = Vec3(0.01, 0.0, dimension == 2 ? 0.0 : 0.007);
+  RunOptions options;
+  options.threads = 1;
+  return {model, {{p, q}, {}}, MPI_COMM_WORLD, options};
+}
+
+TEST_P(Gas, KeepsItsEnergyInTangentialSprings) {
+  for (const bool is_on_wall : {false, true}) {
+    auto simulation = make_sticking(GetParam(), is_on_wall);
+    const double kinetic = simulation.measure().kinetic.value(),
+                 elastic = simulation.measure().elastic.value();
+    simulation.run(1);
+    const double start = test::total_energy(simulation);
+
+    double stored = 0.0;
+    for (int k = 0; k < 30; ++k) {
+      simulation.run(99);
+      EXPECT_NEAR(test::total_energy(simulation), start, 0.02 * kinetic) << k;
+      stored = std::max(stored, simulation.measure().elastic.value() - elastic);
+    }
+
+    EXPECT_GT(stored, 0.25 * kinetic) << (is_on_wall ? "wall" : "pair");
   }
 }
 
