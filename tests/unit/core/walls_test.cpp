@@ -104,6 +104,29 @@ TEST(Walls, KeepWhatLoadedPlatesPressForTheRows) {
   EXPECT_EQ(works[1].work.value(), 0.0);
 }
 
+TEST(Walls, ALoadedPlateIsNotPressedAtItsEndByWhatLiesOnThePlateBesideIt) {
+  WallSpec fixed = spec_of(WallKind::Plate, {0.0, 1.0, 0.0}, 2.0), loaded = fixed;
+  loaded.is_loaded = true;
+  loaded.mass = 1.0;
+  for (const double x : {-0.1, 0.1}) {
+    Setting walls({fixed, loaded});
+    walls.states[0].point = Vec3(-1.0, 0.0, 0.0);
+    walls.states[1].point = Vec3(1.0, 0.0, 0.0);
+    ParticleStore<2> store = one_particle<2>({x, 0.4, 0.0}, 0.5);
+    std::vector<WallSums> pressed(2), works(2);
+    WallContacts<2> contacts;
+    contacts.search(store, walls.view(), 0.05);
+    ASSERT_EQ(contacts.list().size(), 2U);
+
+    contacts.press(store, walls.frame(), pressed);
+    contacts.add_to_rows(store, walls.frame(), works, 0, 1);
+
+    EXPECT_NEAR(pressed[1].force[1].value(), x < 0.0 ? 0.0 : -10.0, 1e-9) << x;
+    EXPECT_NEAR(store.f(0)[0], 0.0, 1e-9) << x;
+    EXPECT_NEAR(store.f(0)[1], 10.0, 1e-9) << x;
+  }
+}
+
 TEST(Walls, ListOnlyWhatIsNearAndActive) {
   Setting walls(std::vector<WallSpec>(3, spec_of(WallKind::Plane, {0.0, 1.0, 0.0})));
   walls.states[1].is_active = false;

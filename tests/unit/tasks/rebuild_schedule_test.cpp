@@ -81,6 +81,17 @@ TEST(RebuildSchedule, NoStepIsComputedBeyondHalfTheSkinHoweverFastParticlesAre) 
   }
 }
 
+TEST(RebuildSchedule, AnswersComeInTimeSoThatListsServeForHalfTheSkin) {
+  constexpr int kSteps = 2000;
+  for (const double speed : {0.1, 0.2, 0.3}) {
+    int rebuilds = 0;
+
+    EXPECT_LE(farthest({0.0, speed}, 0.0, kSteps, rebuilds), 0.5 * kSkin);
+
+    EXPECT_LE(rebuilds, 1.08 * kSteps * speed * kDt / (0.5 * kSkin)) << speed;
+  }
+}
+
 TEST(RebuildSchedule, FastParticlesHaveNewListsInEveryStepAndSlowOnesAgainTheirOldOnes) {
   RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0, kLook);
   schedule.begin(0, 50.0);
