@@ -392,30 +392,52 @@ TEST(Kernels, RoundToMultiplesOfTheGrainAndBoundEachComponent) {
   }
 }
 
+/// Pairs along x, twice each, that press and, with a slip, rub along the last axis: with as many
+/// grains each time, so with ties where that is a half more than a whole number.
+template <int Dim>
+void expect_rounded_outwards(VectorWidth width, double grains, bool slips) {
+  using L = Layout<Dim>;
+  ContactTable table{1, {ContactConstants{}}, true};
+  table.constants[0].kn = table.constants[0].ct.constant = 2.0 * grains * kGrain.size;
+  table.constants[0].mu = 10.0;
+  const LawTable laws(table);
+  const KernelSet kernels = make_kernels(Dim, width, laws, false, {});
+  Sample<Dim> s(9, 8, 1, 71);
+  s.spin.assign(s.spin.size(), 0.0);
+  for (int k = 0; k < 8; ++k) {
+    double* x = s.motion.data() + 8 * k;
+    std::fill_n(x, 8, 0.0);
+    x[0] = k % 2 == 0 ? 0.0 : 0.5;
+    x[L::kRadius] = 0.5;
+    x[4 + Dim - 1] = k % 2 == 1 && slips ? 0.5 : 0.0;
+    const auto pair = static_cast<std::size_t>(k);
+    s.list.i[pair] = k / 2 * 2, s.list.j[pair] = s.list.i[pair] + 1;
+    s.list.code[pair] = laws.code(0, 0);
+  }
+
+  kernels.pairs(s.job(laws, {}));
+
+  const double both = 2.0 * std::ceil(grains) * kGrain.size, rub = slips ? both : 0.0;
+  for (std::size_t k = 0; k < 8; ++k) {
+    const double side = k % 2 == 0 ? 1.0 : -1.0;  // the two feel opposite forces and equal torques
+    const std::vector<double> expected =
+        Dim == 2 ? std::vector<double>{-side * both, side * rub, rub}
+                 : std::vector<double>{-side * both, 0.0, side * rub, -1.0, 0.0, -rub, 0.0};
+    for (std::size_t c = 0; c < expected.size(); ++c) {
+      if (c == 3) continue;  // the sum of sizes
+      EXPECT_EQ(s.component(k * L::kForce + c), expected[c])
+          << name_of(width) << ", " << Dim << "D, " << grains << " grains, component " << c;
+    }
+  }
+}
+
 TEST(Kernels, AddTiesAndZerosAlikeInAnyOrder) {
-  // Along x only, so that other components are zero; each force is five and a half grains, a tie.
   for (const VectorWidth width : vector_widths()) {
-    ContactTable table{1, {ContactConstants{}}, true};
-    table.constants[0].kn = 11.0 * kGrain.size;
-    const LawTable laws(table);
-    const KernelSet kernels = make_kernels(2, width, laws, false, {});
-    Sample<2> s(9, 8, 1, 71);
-    for (int k = 0; k < 8; ++k) {
-      double* x = s.motion.data() + 8 * k;
-      std::fill_n(x, 8, 0.0);
-      x[0] = k % 2 == 0 ? 0.0 : 0.5;
-      x[2] = 0.5;
-    }
-    for (std::size_t k = 0; k < 8; ++k) {
-      s.list.i[k] = static_cast<std::int32_t>(k / 2 * 2), s.list.j[k] = s.list.i[k] + 1;
-      s.list.code[k] = laws.code(0, 0);
-    }
-    kernels.pairs(s.job(laws, {}));
-    for (int k = 0; k < 8; k += 2) {
-      const double f = s.component(static_cast<std::size_t>(4 * k));
-      EXPECT_EQ(f, -12.0 * kGrain.size) << name_of(width) << ": each of two rounded outwards";
-      EXPECT_EQ(s.component(static_cast<std::size_t>(4 * k + 4)), -f);
-      EXPECT_EQ(s.component(static_cast<std::size_t>(4 * k + 1)), 0.0);
+    for (const double grains : {4.5, 5.5}) {  // to even would be inwards, and outwards
+      for (const bool slips : {false, true}) {
+        expect_rounded_outwards<2>(width, grains, slips);
+        expect_rounded_outwards<3>(width, grains, slips);
+      }
     }
   }
 }

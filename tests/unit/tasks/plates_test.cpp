@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "support/mpi_session.hpp"
 
 namespace barchan {
@@ -85,6 +87,20 @@ TEST(Plates, WithDampingReachASteadySpeed) {
   for (int n = 0; n < 1000; ++n) (void)step(plates, states, Vec3::Zero());
 
   EXPECT_NEAR(states[0].velocity[1], -0.6, 1e-9);
+}
+
+TEST(Plates, WithDampingSlowDownToSecondOrder) {
+  WallSpec spec = plate();
+  spec.load = 0.0;
+  spec.damping = 0.1 * spec.mass / kDt;
+  const std::vector<WallSpec> specs{spec};
+  std::vector<WallState> states(1);
+  states[0].velocity = Vec3(0.0, -3.0, 0.0);
+  Plates plates(Communicator(test::world()), specs, kDt);
+
+  for (int n = 0; n < 10; ++n) (void)step(plates, states, Vec3::Zero());
+
+  EXPECT_NEAR(states[0].velocity[1], -3.0 * std::exp(-1.0), 3.0 * 1e-3);
 }
 
 TEST(Plates, WaitUntilTheyAreActiveWhileGivenVelocitiesAlwaysMove) {
