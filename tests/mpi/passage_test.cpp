@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -160,11 +161,14 @@ TEST(Passage, ByAPlateThatMovesIsAnError) {
 }
 
 TEST(Passage, AcrossAPeriodicFaceIsAnError) {
-  Scenario s = range(2);
-  s.model.domain.periodic[0] = true;
-  s.set.particles.push_back(ball(1, Vec3(7.8, 2.0, 0.0), Vec3(speed_of(3.7), 0, 0)));
-  s.set.particles.push_back(ball(2, Vec3(0.2, 2.0, 0.0), Vec3(-speed_of(2.1), 0, 0)));
-  expect_named(outcome_of(s), {"particle 1 at", "particle 2 at"});
+  // Behind the face; and right at it, where neither has been wrapped when the step ends.
+  for (const auto& [right, left] : {std::pair{3.7, 2.1}, {3.1, 3.1}}) {
+    Scenario s = range(2);
+    s.model.domain.periodic[0] = true;
+    s.set.particles.push_back(ball(1, Vec3(7.8, 2.0, 0.0), Vec3(speed_of(right), 0, 0)));
+    s.set.particles.push_back(ball(2, Vec3(0.2, 2.0, 0.0), Vec3(-speed_of(left), 0, 0)));
+    expect_named(outcome_of(s), {"particle 1 at", "particle 2 at"});
+  }
 }
 
 TEST(Passage, IsToldInTheSameWordsOnAnyNumberOfThreadsAndAfterAForceOfTheCaller) {
