@@ -202,6 +202,18 @@ TEST(Passage, WhatMovesAlikeMayBeAsFastAsItLikes) {
   EXPECT_EQ(outcome_of(s).error, "");
 }
 
+TEST(Passage, OfTwoThatAreBondedIsTheBondsBusiness) {
+  Scenario s = range(2);
+  s.num_steps = 4;
+  s.model.bond_laws = {BondLaw{"soft", 1.0}};
+  s.set.particles.push_back(ball(1, Vec3(1.0, 2.0, 0.0), Vec3(speed_of(3.7), 0, 0)));
+  s.set.particles.push_back(ball(2, Vec3(1.05, 2.0, 0.0), Vec3::Zero()));
+  expect_named(outcome_of(s), {"particle 1 at", "particle 2 at"});
+
+  s.set.bonds = {{1, 2, 0}};
+  EXPECT_EQ(outcome_of(s).error, "");
+}
+
 /// A cloud in free fall, so fast in the end that lists last for one step.
 Scenario fast_fall() {
   Scenario s{"a fast fall", plain_model(2, 4.0, 20.0), {}, 800, {}, true};

@@ -56,6 +56,8 @@ TEST(SourceRecord, NamesTablesThatWereAddedOrAreGone) {
 
   EXPECT_EQ(source_differences(two, ring), "[[particles]] 1 (packing) of the checkpoint is gone");
   EXPECT_EQ(source_differences(ring, two), "[[particles]] 1 (packing, line 30) was added");
+  EXPECT_EQ(source_differences(std::vector{two[0]}, two),
+            "[[particles]] 2 (ring, line 37) was added");
   EXPECT_EQ(source_differences({}, two), "");  // particles of a program have no records
 }
 
