@@ -380,16 +380,22 @@ TEST(Kernels, SumTheSameInAnyOrderAndToZeroOverAll) {
   expect_sums_without_order<3>();
 }
 
-TEST(Kernels, RoundToMultiplesOfTheGrainAndBoundEachComponent) {
+template <int Dim>
+void expect_bounded_multiples(std::initializer_list<std::size_t> components) {
   const LawTable laws = laws_of(2, Dashpots::Both, false);
-  Sample<3> sample(40, 200, laws.size(), 61);
+  Sample<Dim> sample(40, 200, laws.size(), 61);
   for (const auto& f : forces_of_pairs(sample, laws, {}, 2)) {
-    for (const std::size_t c : {0U, 1U, 2U, 4U, 5U, 6U}) {
+    for (const std::size_t c : components) {
       EXPECT_EQ(std::remainder(f[c], kGrain.size), 0.0);
       EXPECT_LE(std::fabs(f[c]), f[3] + kGrain.size);
       EXPECT_FALSE(f[c] == 0.0 && std::signbit(f[c]));
     }
   }
+}
+
+TEST(Kernels, RoundToMultiplesOfTheGrainAndBoundEachComponent) {
+  expect_bounded_multiples<2>({0, 1, 2});
+  expect_bounded_multiples<3>({0, 1, 2, 4, 5, 6});
 }
 
 /// Pairs along x, twice each, that press and, with a slip, rub along the last axis: with as many
