@@ -133,8 +133,20 @@ void print_strips(const LoadedDeck& loaded, int wanted) {
 }
 
 void print_stages(const Model& model) {
-  std::printf("Run: %s steps of %g s, %.6g s in all\n", grouped(model.time.num_steps).c_str(),
-              model.time.step, static_cast<double>(model.time.num_steps) * model.time.step);
+  const double whole = static_cast<double>(model.time.num_steps) * model.time.step;
+  double most = 0.0;  // of all stages
+  bool may_be_shorter = false;
+  for (const Stage& stage : model.stages) {
+    most += stage.max_time;
+    may_be_shorter |= stage.kinetic_ratio > 0.0;
+  }
+  if (most < whole || (may_be_shorter && model.stages.back().kinetic_ratio > 0.0)) {
+    std::printf("Run: at most %.6g s in steps of %g s, to the end of the last stage\n",
+                std::min(most, whole), model.time.step);
+  } else {
+    std::printf("Run: %s steps of %g s, %.6g s in all\n", grouped(model.time.num_steps).c_str(),
+                model.time.step, whole);
+  }
   Rows rows;
   for (const Stage& stage : model.stages) {
     std::string until = "to the end";

@@ -88,7 +88,10 @@ struct Words {
 void add_run(CLI::App& root, RunArguments& run, Words& words) {
   auto& [schedule, search, progress] = words;
   CLI::App& command = *root.add_subcommand("run", "Run a deck and write its results into a folder");
-  command.add_option("deck", run.deck, "The deck, a TOML file")->required()->type_name("DECK");
+  command.add_option("deck", run.deck, "The deck, a TOML file")
+      ->required()
+      ->type_name("DECK")
+      ->check(not_empty());
   command
       .add_option("--out", run.out,
                   "Folder of the results; default: the deck's name with .out, here")
@@ -172,7 +175,10 @@ void add_probe(CLI::App& root, ProbeArguments& probe) {
 void add_others(CLI::App& root, CommandLine& line) {
   CLI::App& check = *root.add_subcommand(
       "check", "Print what a deck would do, and whether its time step is stable");
-  check.add_option("deck", line.check.deck, "The deck, a TOML file")->required()->type_name("DECK");
+  check.add_option("deck", line.check.deck, "The deck, a TOML file")
+      ->required()
+      ->type_name("DECK")
+      ->check(not_empty());
   check.add_option("--ranks", line.check.ranks, "Show the strips for this number of ranks")
       ->type_name("P")
       ->transform(whole_number())
@@ -183,7 +189,8 @@ void add_others(CLI::App& root, CommandLine& line) {
       *root.add_subcommand("info", "Print what a file or folder is, and its key figures");
   info.add_option("path", line.info_path, "A run folder, snapshot, particle file, series or deck")
       ->required()
-      ->type_name("PATH");
+      ->type_name("PATH")
+      ->check(not_empty());
 
   CLI::App& convert = *root.add_subcommand(
       "convert", "Convert particles and bonds: .csv, LAMMPS data (.data, .lmp), .vtp");
@@ -191,10 +198,12 @@ void add_others(CLI::App& root, CommandLine& line) {
       .add_option("in", line.convert.in,
                   "File to read; also a .pvtp of all ranks, or packed as .gz")
       ->required()
-      ->type_name("IN");
+      ->type_name("IN")
+      ->check(not_empty());
   convert.add_option("out", line.convert.out, "File to write; its ending selects the format")
       ->required()
-      ->type_name("OUT");
+      ->type_name("OUT")
+      ->check(not_empty());
   convert
       .add_option("--dimension", line.convert.dimension,
                   "2 or 3; default: 2 where all particles lie in the plane z = 0")

@@ -13,7 +13,7 @@ constexpr int kNumeric = ExactSum::kDigits - 1;
 
 void ExactSum::add(double term) {
   if (term == 0.0) return;
-  if (!std::isfinite(term) || std::fabs(term) >= 0x1p300) {
+  if (!std::isfinite(term)) {
     ++digits_[kNumeric];
     return;
   }
@@ -48,12 +48,16 @@ double ExactSum::value() const {
   if (digits_[kNumeric] != 0) return std::numeric_limits<double>::quiet_NaN();
   ExactSum carried = *this;
   carried.carry();
+  Digits& digits = carried.digits_;
+  std::size_t top = kNumeric - 1;  // the highest digit but those that only say the sign
+  for (; top > 0 && (digits[top] == 0 || digits[top] == -1); --top)
+    digits[top - 1] += digits[top] * (std::int64_t{1} << 32);
+  const int scale = top + 4 > kNumeric ? 128 : 0;  // no part of a sum is beyond the doubles
   double sum = 0.0;
-  for (int d = kNumeric - 1; d >= 0; --d) {
-    sum += std::ldexp(static_cast<double>(carried.digits_[static_cast<std::size_t>(d)]),
-                      kLowest + 32 * d);
+  for (std::size_t d = top + 1; d-- > 0;) {
+    sum += std::ldexp(static_cast<double>(digits[d]), kLowest + 32 * static_cast<int>(d) - scale);
   }
-  return sum;
+  return std::ldexp(sum, scale);
 }
 
 }  // namespace barchan

@@ -31,6 +31,23 @@ struct Course {
   }
 };
 
+/// Whether a contact that began in this step pushes in another direction, by more than 60 degrees,
+/// than it did when it began: a plate's end was skipped.
+/// @param foot  of the plate, at a share of the step before its end
+template <class Foot>
+bool turns(const Foot& foot, const Course& course) {
+  if (course.begin < course.reach || course.end >= course.reach) return false;
+  double apart = 1.0, touching = 0.0;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (apart + touching);
+    (foot(middle).distance < course.reach ? touching : apart) = middle;
+  }
+  const WallFoot first = foot(touching), last = foot(0.0);
+  double along = 0.0;
+  for (int c = 0; c < 3; ++c) along += first.to_foot[c] * last.to_foot[c];
+  return along < 0.5 * first.distance * last.distance;
+}
+
 /// @param d  from one to the other as the step ended  @param s  how that has changed in the step
 template <int Dim>
 Course course_of(const double* d, const double* s, double reach) {
@@ -106,16 +123,18 @@ void PassageWatch<Dim>::look_at(std::span<const WallContact<Dim>> contacts, Rows
       s[c] = world_.dt * (v[c] - world_.walls[w].velocity[c]);
       s2 += s[c] * s[c];
     }
-    const auto distance = [&](double back) {
+    const auto foot = [&](double back) {
       double at[3] = {};
       for (int c = 0; c < Dim; ++c) at[c] = x[c] - back * s[c];
-      return world_.wall_shapes[w].foot(world_.walls[w].point, it->image, at).distance;
+      return world_.wall_shapes[w].foot(world_.walls[w].point, it->image, at);
     };
+    const auto distance = [&](double back) { return foot(back).distance; };
     const double end = distance(0.0);
     if (s2 <= end * end && s2 <= radius * radius) continue;
     const Course course{distance(1.0), least(distance), end, radius};
     const bool goes_through = course.nearest < 1e-6 * radius;
-    if (!goes_through && (s2 <= radius * radius || !course.skips_approach())) continue;
+    const auto is_passed = [&] { return course.skips_approach() || turns(foot, course); };
+    if (!goes_through && (s2 <= radius * radius || !is_passed())) continue;
     Passage p;
     p.first = suspect_of(store_, it->row);
     p.wall = it->wall;

@@ -24,7 +24,11 @@
 //        ○ - - - -( ●  )                passed: on the way deeper in the other than r
 //
 // A plate is passed whenever a centre goes through it, however short s is: then its contact was too
-// soft. Nothing passes a plane, which has no other side.
+// soft; and where a step ends on a plate's face that it should have met at its end:
+//
+//        ○ - - - ▐███●███    the first contact would push back, that at the step's end to the side
+//
+// Nothing passes a plane, which has no other side.
 
 namespace barchan {
 

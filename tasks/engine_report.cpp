@@ -159,23 +159,25 @@ void Simulation::EngineOf<Dim>::report_passage(const Passage& p) const {
   const bool is_wall = p.second.id == 0;
   const double radius = is_wall ? p.first.radius : std::min(p.first.radius, p.second.radius);
   const bool is_quick = p.travel > radius;
-  // So stiff that half the radius stops them, in steps of a fifth of the limit.
-  const double speed = p.travel / world_.dt;
-  const double stiffness = p.mass * speed * speed / (0.25 * radius * radius);
+  // So stiff that half the radius stops them, in steps of a fifth of the limit. A contact that was
+  // too soft holds the energy of an overlap of the radius.
+  const double speed = p.travel / world_.dt, kept = is_quick ? 0.0 : p.stiffness;
+  const double stiffness = 4.0 * (p.mass * speed * speed / (radius * radius) + kept);
   const double step = 0.4 * std::sqrt(p.mass / std::max(stiffness, p.stiffness));
+  const bool is_stiffer = stiffness > p.stiffness, is_shorter = 0.9 * step < world_.dt;
   throw StepError(
       {step_, Passed, p.first.id, p.second.id},
       fmt::format(
           "at step {} {} has passed {}: they moved {:.3g} m against each other in one step, {} "
-          "{:.3g} m{}; a run from step 0 with {}time.step = {:.2g} would hold them apart",
+          "{:.3g} m{}; a run from step 0 with {}{}{} would hold them apart",
           step_, name(p.first),
           is_wall ? "wall '" + model_.walls[static_cast<std::size_t>(p.wall)].name + "'"
                   : name(p.second),
           p.travel, is_quick ? "more than the smaller radius," : "with a radius of", radius,
           is_quick ? "" : ", and their contact was too soft to stop them",
-          stiffness > p.stiffness ? fmt::format("normal_stiffness = {:.2g} and ", 1.1 * stiffness)
-                                  : "",
-          0.9 * step));
+          is_stiffer ? fmt::format("normal_stiffness = {:.2g}", 1.1 * stiffness) : "",
+          is_stiffer && is_shorter ? " and " : "",
+          is_shorter ? fmt::format("time.step = {:.2g}", 0.9 * step) : ""));
 }
 
 /// This rank alone knows: the others may be in the midst of the next step.

@@ -100,9 +100,13 @@ double offset(double lo, double hi) {
 
 std::string remedy(const Model& model) {
   std::string by;
-  for (int axis = 0; axis < model.dimension; ++axis)
-    by += fmt::format("{}{:.15g}", axis == 0 ? "" : ", ",
-                      offset(model.domain.lo[axis], model.domain.hi[axis]));
+  bool is_far = false;
+  for (int axis = 0; axis < model.dimension; ++axis) {
+    const double far = offset(model.domain.lo[axis], model.domain.hi[axis]);
+    is_far |= far != 0.0;
+    by += fmt::format("{}{:.15g}", axis == 0 ? "" : ", ", far);
+  }
+  if (!is_far) return "a smaller domain or a larger time.step would help";
   return fmt::format(
       "subtract ({}) from all positions of the deck (domain, particles, walls), so that they lie "
       "about the origin",

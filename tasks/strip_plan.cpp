@@ -84,9 +84,9 @@ void check_ranks(int num_ranks, const Model& model, int num_slabs) {
   throw InputError(model.domain.place,
                    fmt::format("{} ranks for a domain that is {} cells of {:.3g} m long along {}",
                                num_ranks, num_slabs, width, "xyz"[axis]),
-                   fmt::format("at most {} strips of {} cells fit: use at most {} ranks, or cut "
-                               "along a longer axis by domain.strip_axis",
-                               fit, kMinSlabs, fit));
+                   fmt::format("at most {} strip{} of {} cells fit: use at most {} rank{}, or "
+                               "cut along a longer axis by domain.strip_axis",
+                               fit, fit == 1 ? "" : "s", kMinSlabs, fit, fit == 1 ? "" : "s"));
 }
 
 }  // namespace barchan

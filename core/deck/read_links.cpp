@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <barchan/core/deck/values.hpp>
+#include <barchan/core/error.hpp>
 
 namespace barchan::deck {
 
@@ -34,8 +35,10 @@ BondLinks read_links(const TableReader& table) {
   links.gap = table.optional_number("bond_gap");
   const Node* pairs = table.value("bond_pairs");
   if (pairs == nullptr) return links;
-  if (pairs->kind != Node::Kind::Array || pairs->items.empty())
+  if (pairs->kind != Node::Kind::Array)
     fail_type(*pairs, "bond_pairs", "an array of pairs", "write [[1, 2], [2, 3]]");
+  if (pairs->items.empty())
+    throw InputError(pairs->place(), "bond_pairs has no pair", "write [[1, 2], [2, 3]]");
   for (const Node& item : pairs->items) links.pairs.push_back(read_pair(item));
   return links;
 }

@@ -36,6 +36,10 @@ std::string in_unit(const KeySpec& spec) {
   return spec.unit.empty() ? std::string() : fmt::format(" in {}", spec.unit);
 }
 
+std::string_view one_number(const Node& node) {
+  return node.kind == Node::Kind::String ? "it without quotes" : "one number";
+}
+
 }  // namespace
 
 void fail_type(const Node& node, std::string_view what, std::string_view expected,
@@ -47,7 +51,8 @@ void fail_type(const Node& node, std::string_view what, std::string_view expecte
 
 double finite_number(const Node& node, std::string_view what) {
   if (!node.is_number())
-    fail_type(node, what, "a number", "write it without quotes, such as 0.5 or 2e-4");
+    fail_type(node, what, "a number",
+              fmt::format("write {}, such as 0.5 or 2e-4", one_number(node)));
   if (!std::isfinite(node.number)) {
     throw InputError(node.place(), fmt::format("{} is not finite: {}", what, node.number),
                      "write a finite number");
@@ -72,7 +77,8 @@ double checked_number(const Node& node, const KeySpec& spec) {
   const double value = finite_number(node, spec.key);
   if (!is_in_range(spec.type, value)) {
     throw InputError(node.place(), fmt::format("{} = {} is out of range", spec.key, value),
-                     fmt::format("write a {}{}", type_text(spec), in_unit(spec)));
+                     fmt::format("write {} {}{}", type_text(spec).starts_with('i') ? "an" : "a",
+                                 type_text(spec), in_unit(spec)));
   }
   return value;
 }
@@ -80,7 +86,8 @@ double checked_number(const Node& node, const KeySpec& spec) {
 std::int64_t whole_number(const Node& node, std::string_view what) {
   constexpr double kExact = 0x1p53;  // up to here every whole number is a double
   if (!node.is_number())
-    fail_type(node, what, "an integer", "write it without quotes, such as 1000 or 1e3");
+    fail_type(node, what, "an integer",
+              fmt::format("write {}, such as 1000 or 1e3", one_number(node)));
   if (node.kind == Node::Kind::Integer) return node.integer;
   const double value = finite_number(node, what);
   if (value != std::floor(value)) {

@@ -6,6 +6,7 @@
 #include <barchan/core/error.hpp>
 #include <barchan/core/generators/close_pairs.hpp>
 #include <barchan/core/generators/make_particles.hpp>
+#include <barchan/core/mass.hpp>
 #include <barchan/core/vec_text.hpp>
 
 namespace barchan {
@@ -39,6 +40,9 @@ void check_each(const Model& model, const ParticleData& p, std::size_t index,
     refuse(fmt::format("has radius {:g}", p.radius), "a radius is above zero [m]");
   if (!(p.density > 0.0 && std::isfinite(p.density)))
     refuse(fmt::format("has density {:g}", p.density), "a density is above zero");
+  const double mass = mass_of(p, model.dimension);
+  if (!std::isfinite(mass) || !std::isfinite(1.0 / mass))
+    refuse(fmt::format("has a mass of {:g} kg", mass), "other units keep it within numbers");
   if (p.type < 0 || p.type >= static_cast<std::int32_t>(model.materials.size())) {
     refuse(fmt::format("is of type {}", p.type + 1), "every type needs a material in the deck");
   }

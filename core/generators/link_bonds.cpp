@@ -1,7 +1,9 @@
 #include <barchan/core/generators/link_bonds.hpp>
 
 #include <algorithm>
+#include <set>
 #include <unordered_set>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -37,7 +39,11 @@ class Linker {
   void link_pairs() {
     std::unordered_set<std::int64_t> ids;
     for (const ParticleData& p : set_.particles) ids.insert(p.id);
+    std::set<std::pair<std::int64_t, std::int64_t>> linked;
     for (const auto& [a, b] : source_.links.pairs) {
+      if (!linked.insert(std::minmax(a, b)).second)
+        throw InputError(source_.links.place, fmt::format("bond_pairs links {} and {} twice", a, b),
+                         "a pair has at most one bond");
       for (const std::int64_t id : {a, b}) {
         if (ids.contains(id)) continue;
         throw InputError(source_.links.place, fmt::format("there is no particle {} to link", id),

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -60,10 +61,11 @@ CsvTable::CsvTable(std::string_view text, std::string_view file) : lines_(text, 
 void CsvTable::take_separator(std::string_view line) {
   separator_ = separator_of(line);
   if (separator_ != '\0') return;
-  const bool is_cut_at_blanks = line.front() != '"' && line.find(' ') != std::string_view::npos;
-  if (is_cut_at_blanks)
-    throw InputError(lines_.place(line), "the columns are separated by blanks",
+  for (const auto& [mark, name] : {std::pair{'|', "bars"}, std::pair{' ', "blanks"}}) {
+    if (line.front() == '"' || line.find(mark) == std::string_view::npos) continue;
+    throw InputError(lines_.place(line), fmt::format("the columns are separated by {}", name),
                      "separate them by commas, semicolons or tabs");
+  }
   separator_ = ',';
 }
 

@@ -19,15 +19,6 @@ namespace {
 using Words = LammpsWords;
 using Section = LammpsSection;
 
-std::string_view without_comment(std::string_view line) {
-  return trimmed(line.substr(0, line.find('#')));
-}
-
-std::string_view comment_of(std::string_view line) {
-  const std::size_t hash = line.find('#');
-  return hash == std::string_view::npos ? line.substr(line.size()) : line.substr(hash + 1);
-}
-
 bool is_section(std::string_view content) {
   return !content.empty() && std::isalpha(static_cast<unsigned char>(content.front())) != 0;
 }
@@ -184,6 +175,7 @@ class DataFile {
     if (!index_of_.empty()) return;
     check_particle_file(result_);
     index_of_.reserve(result_.particles.size());
+    has_velocity_.resize(result_.particles.size());
     for (std::size_t i = 0; i < result_.particles.size(); ++i)
       index_of_.emplace(result_.particles[i].id, i);
   }
@@ -202,7 +194,14 @@ class DataFile {
       throw InputError(lines_.place(), fmt::format("{} fields in a row of Velocities", words.count),
                        "id vx vy vz wx wy wz");
     }
-    ParticleData& particle = result_.particles[find(words.at[0], "Velocities")];
+    const std::size_t row = find(words.at[0], "Velocities");
+    if (has_velocity_[row])
+      throw InputError(
+          lines_.place(),
+          "a second row of Velocities for particle " + std::to_string(result_.particles[row].id),
+          "every id appears once");
+    has_velocity_[row] = true;
+    ParticleData& particle = result_.particles[row];
     for (int axis = 0; axis < 3; ++axis) {
       particle.velocity[axis] =
           parse_number(words.at[static_cast<std::size_t>(1 + axis)], "a velocity", lines_);
@@ -260,14 +259,16 @@ class DataFile {
     if (style_ == LammpsStyle::BpmSphere && has_bond_count_) result_.has_bonds = true;
     check_particle_file(result_);
     check_bonds(result_, result_.bonds, result_.file);
-    compare_count(result_.particles.size(), num_atoms_, "Atoms");
-    compare_count(result_.bonds.size(), num_bonds_, "Bonds");
+    compare_count(std::ssize(result_.particles), num_atoms_, "Atoms");
+    compare_count(std::ssize(result_.bonds), num_bonds_, "Bonds");
+    if (has(Section::Velocities))
+      compare_count(std::ranges::count(has_velocity_, true), num_atoms_, "Velocities");
     if (!skipped_.empty())
       result_.notes.push_back(fmt::format("sections not used: {}", fmt::join(skipped_, ", ")));
   }
 
-  void compare_count(std::size_t found, std::int64_t announced, const char* section) const {
-    if (announced == static_cast<std::int64_t>(found)) return;
+  void compare_count(std::int64_t found, std::int64_t announced, const char* section) const {
+    if (announced == found) return;
     throw InputError(SourcePlace{result_.file, 0, 0}, fmt::format("{} rows in {}", found, section),
                      fmt::format("the header announces {}", announced));
   }
@@ -286,6 +287,7 @@ class DataFile {
   std::array<bool, 3> has_bounds_{};
   std::vector<std::string_view> skipped_;
   std::unordered_map<std::int64_t, std::size_t> index_of_;
+  std::vector<bool> has_velocity_;
 };
 
 }  // namespace

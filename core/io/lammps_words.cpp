@@ -54,6 +54,15 @@ bool is_one_of(std::string_view word, std::span<const std::string_view> words) {
 
 }  // namespace
 
+std::string_view without_comment(std::string_view line) {
+  return trimmed(line.substr(0, line.find('#')));
+}
+
+std::string_view comment_of(std::string_view line) {
+  const std::size_t hash = line.find('#');
+  return hash == std::string_view::npos ? line.substr(line.size()) : line.substr(hash + 1);
+}
+
 LammpsWords::LammpsWords(std::string_view content) {
   for (std::string_view word = take_word(content); !word.empty() && count < at.size();
        word = take_word(content)) {

@@ -9,6 +9,10 @@
 
 namespace barchan {
 
+/// What is before a line's #, and what is behind it.
+[[nodiscard]] std::string_view without_comment(std::string_view line);
+[[nodiscard]] std::string_view comment_of(std::string_view line);
+
 /// Words of a line; more than the longest row has are counted as one too many.
 struct LammpsWords {
   std::array<std::string_view, 12> at{};

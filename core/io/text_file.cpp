@@ -151,9 +151,12 @@ std::string with_point(std::string_view text) {
                             const char* kind,
                             const char* remedy = "a number such as 1.5e-3 belongs here") {
   if (const std::string number = with_point(text); !number.empty()) {
+    const bool may_be_thousands = text.size() - text.find(',') == 4;  // 2,650
     throw InputError(lines.place(text),
-                     std::string(what) + " is " + in_quotes(text) + ", which has a decimal comma",
-                     "write a decimal point: " + number);
+                     std::string(what) + " is " + in_quotes(text) + ", which has " +
+                         (may_be_thousands ? "a comma" : "a decimal comma"),
+                     may_be_thousands ? "write a decimal point, and no mark between thousands"
+                                      : "write a decimal point: " + number);
   }
   throw InputError(lines.place(text),
                    std::string(what) + " is " + in_quotes(text) + ", which is not " + kind, remedy);

@@ -29,8 +29,8 @@ void check_sums(const Simulation& simulation, const Measures& m) {
   }
   if (wrong.empty()) return;
   throw AgreedError(
-      fmt::format("at step {} {} {} not finite, or beyond 2e90, which is more than sums can hold; "
-                  "smaller masses and speeds, or other units, would help",
+      fmt::format("at step {} {} {} not finite, or beyond the range of numbers (1.8e308); smaller "
+                  "masses and speeds, or other units, would help",
                   simulation.step(), fmt::join(wrong, ", "), wrong.size() == 1 ? "is" : "are"));
 }
 

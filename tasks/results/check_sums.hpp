@@ -5,7 +5,7 @@
 
 namespace barchan {
 
-/// Holds energies, momentum, and forces and work of walls against what exact sums can hold, 2e90.
+/// Holds energies, momentum, and forces and work of walls against the range of numbers.
 /// @param measures  just measured. Errors: AgreedError, with what is too large, alike on every rank
 void check_sums(const Simulation& simulation, const Measures& measures);
 

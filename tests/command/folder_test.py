@@ -175,6 +175,8 @@ def check_empty_words():
             fresh("saved.out")
             refused(f"{words}", run("run", "saved.toml", *SHORT, *words), option)
             expect(not os.path.exists("saved.out"), f"{words}: a folder was made")
+    for words in (("run", ""), ("check", ""), ("info", ""), ("convert", "", "a.csv"), ("convert", "a.csv", "")):
+        refused(f"{words}", run(*words), "is empty")
 
 
 def check_launchers():

@@ -99,18 +99,30 @@ def check_shots():
     around = changed(pair, ("hi = [3.0, 3.0]", 'hi = [3.0, 3.0]\nperiodic = ["x"]'), ("[60.0", "[-60.0"), ("[-30.0", "[30.0"))
     expect_same_words("shots around the box", around, "particle 1 at", "has passed particle 2 at")
 
+    end = changed(SHOT, ("[0.3033, 1.5]", "[1.0003, 0.3]"), ("velocity = [60.0, 0.0]", "velocity = [0.0, 60.0]"))
+    expect_same_words("shot at the end of a plate", end, "particle 1 at", "has passed wall 'shield'", "more than the smaller radius")
+
     several = "".join(f'{{ position = [{x}, {y}], radius = 0.001, velocity = [{v}, 0.0] }}, '
                       for x, y, v in ((2.3, 1.5, 60.0), (2.3637, 1.5, -30.0), (0.3, 1.0, 60.0), (0.3637, 1.0, -30.0)))
     both = changed(pair, ("particle = [ ", "particle = [ " + several))
     expect_same_words("shots in two strips", both, "particle 1 at", "has passed particle 2 at")
 
+    expect_held("more than the smaller radius", told, SHOT, 0.02)
+    soft = changed(SHOT, ("step = 1e-4", "step = 1e-6"), ("steps = 300", "steps = 13000"), ("normal_stiffness = 1e3", "normal_stiffness = 1e7"))
+    expect_held("too soft", expect_same_words("a soft contact", soft, "has passed wall 'shield'", "too soft"), soft, 0.02)
+
+
+def expect_held(name, told, deck, end):
+    """The remedy of the message makes the shot rebound."""
     remedy = dict(re.findall(r"(normal_stiffness|time\.step) = ([0-9.e+-]+)", told))
-    step = float(remedy["time.step"])
-    write("held.toml", changed(SHOT, ("normal_stiffness = 1e3", f"normal_stiffness = {float(remedy['normal_stiffness'])}"),
-                               ("step = 1e-4", f"step = {step}"), ("steps = 300", f"steps = {int(0.02 / step)}")))
+    stiffness, step = (re.search(rf"\n{key} = (\S+)", deck) for key in ("normal_stiffness", "step"))
+    length = float(remedy.get("time.step", step.group(1)))
+    expect(length <= float(step.group(1)), f"{name}: a longer step as a remedy: {told}")
+    write("held.toml", changed(deck, (stiffness.group(0), f"\nnormal_stiffness = {float(remedy['normal_stiffness'])}"),
+                               (step.group(0), f"\nstep = {length}"), (re.search("steps = .*", deck).group(0), f"steps = {int(end / length)}")))
     fresh("held.out")
     done = run("run", "held.toml", "--quiet")
-    expect(done.returncode == 0, f"the remedy does not hold them apart: {done.stderr}")
+    expect(done.returncode == 0, f"{name}: the remedy does not hold them apart: {done.stderr}")
     with open("held.out/series.csv", encoding="utf-8") as file:
         rows = [line.split(",") for line in file.read().splitlines()]
     expect(float(rows[-1][rows[0].index("momentum_x")]) < 0.0, f"no rebound: {rows[-1]}")
@@ -184,8 +196,9 @@ def check_far_away():
 
 
 def check_overflow():
-    heavy = changed(SHOT, ("density = 1000.0", "density = 1e94"), ("normal_stiffness = 1e3", "normal_stiffness = 1e80"))
-    high = changed(heavy, ("dimension = 2", "dimension = 2\ngravity = [0.0, -9.81]"), ("velocity = [60.0, 0.0]", "velocity = [0.0, 0.0]"))
+    heavy = changed(SHOT, ("density = 1000.0", "density = 1e307"), ("normal_stiffness = 1e3", "normal_stiffness = 1e300"),
+                    ("radius = 0.2 }", "radius = 0.2, velocity = [60.0, 0.0] }"))
+    high = changed(heavy, ("dimension = 2", "dimension = 2\ngravity = [0.0, -981.0]"), ("[60.0, 0.0]", "[0.0, 0.0]"))
     for deck, what in ((heavy, "kinetic"), (high, "gravitational")):
         write("heavy.toml", deck)
         for ranks in (1, 2):

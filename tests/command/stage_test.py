@@ -25,6 +25,8 @@ def ended_at(name, *arguments, ranks=1):
 def check_time():
     write("stage.toml", DECK + CHECKPOINTS + STAGES + "max_time = 4e-3\n")
     fresh(OUT)
+    done = run("check", "stage.toml")
+    expect("Run: at most 0.0095 s in steps of 0.0001 s" in done.stdout, f"check of a short last stage: {done.stdout}")
     expected = ended_at("one rank")
     expect(expected[0] == 95, f"ended at step {expected[0]}, not 55 + 40")
     expect("'rest', is over" in log_of(OUT), f"log: {log_of(OUT)}")

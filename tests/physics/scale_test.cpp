@@ -115,6 +115,7 @@ void expect_same_scaled(int dimension) {
   EXPECT_EQ(state_of(dimension, -30, 0, -10), reference) << "grains of a nanometre";
   EXPECT_EQ(state_of(dimension, 40, 3, 0), reference) << "grains of a planet";
   EXPECT_EQ(state_of(dimension, -120, -60, -200), reference);
+  EXPECT_EQ(state_of(dimension, 200, 3, 40), reference) << "energies beyond 1e120 J";
 }
 
 TEST(Scale, ADiskHeapOfAnySizeGivesTheSameBits) {

@@ -114,7 +114,9 @@ TEST(WholeNumbers, ThatAreNoneAreCalledThat) {
   expect_parts(error("steps = 1.5"),
                {":8:9: steps = 1.5 is not a whole number", "such as 1000 or 1e3"});
   expect_parts(error("steps = 1e17"), {":8:9: steps = 1e+17 is too large", "9007199254740992"});
-  expect_parts(error("steps = -1e3"), {":8:9: steps = -1000 is out of range"});
+  expect_parts(error("steps = -1e3"), {":8:9: steps = -1000 is out of range", "write an integer"});
+  expect_parts(error("steps = [7]"),
+               {":8:9: steps: expected an integer, found an array (write one"});
   expect_parts(error("steps = inf"), {":8:9: steps is not finite"});
   expect_parts(error("steps = \"1e3\""), {":8:9: steps: expected an integer, found a string"});
 }

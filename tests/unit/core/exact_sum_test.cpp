@@ -102,7 +102,19 @@ TEST(ExactSum, OfManyNegativeTermsIsNegative) {
 TEST(ExactSum, IsNotANumberWhenATermIsNot) {
   EXPECT_TRUE(std::isnan(sum_of({1.0, std::numeric_limits<double>::quiet_NaN()})));
   EXPECT_TRUE(std::isnan(sum_of({std::numeric_limits<double>::infinity(), 1.0})));
-  EXPECT_TRUE(std::isnan(sum_of({0x1p301})));
+}
+
+TEST(ExactSum, HoldsTheLargestNumbers) {
+  constexpr double kMost = std::numeric_limits<double>::max();
+  EXPECT_EQ(sum_of({kMost, kMost, -kMost}), kMost);
+  EXPECT_EQ(sum_of({-kMost}), -kMost);
+  EXPECT_EQ(sum_of({-kMost, 1.0, kMost}), 1.0);
+  EXPECT_EQ(sum_of({kMost, kMost}), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(sum_of({-kMost, -kMost}), -std::numeric_limits<double>::infinity());
+  for (int e = 200; e < 1023; ++e) {
+    const double large = std::ldexp(1.0, e);
+    EXPECT_EQ(sum_of({-large, 0.75 * large}), -0.25 * large) << e;
+  }
 }
 
 }  // namespace

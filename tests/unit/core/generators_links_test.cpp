@@ -82,6 +82,9 @@ TEST(LinkBonds, LinksThePairsOfTheDeckAlsoBetweenSources) {
   check_particles(model_of(), set);
   second.links.pairs = {{6, 7}};
   EXPECT_NE(message_of({first, second}).find("no particle 7"), std::string::npos);
+  second.links.pairs = {{6, 1}, {1, 6}};
+  EXPECT_NE(message_of({first, second}).find("deck.toml:9:8: bond_pairs links 1 and 6 twice"),
+            std::string::npos);
 }
 
 TEST(CheckParticles, LooksAtLengthsAndForcesOfBonds) {
@@ -211,6 +214,7 @@ TEST(DeckLinks, AreReadAndChecked) {
             std::string::npos);
   for (const char* wrong : {"[]", "[1, 2]", "[[1]]", "[[1, 1]]", "[[0, 1]]", "[[1, 2.5]]", "3"})
     EXPECT_NE(error_of({{bond, bond + "\nbond_pairs = " + wrong}}), "") << wrong;
+  EXPECT_NE(error_of({{bond, bond + "\nbond_pairs = []"}}).find("has no pair"), std::string::npos);
   const std::string kind = "kind = \"file\"\npath = \"";
   const std::string list =
       "kind = \"packing\"\nregion = { lo = [0.0, 0.0], hi = [10.0, 3.0] }\nradius = [0.04, "

@@ -233,6 +233,8 @@ TEST(CheckParticles, NamesWhatIsWrong) {
             std::string::npos);
   EXPECT_NE(message([](Set& s) { s.particles[3].radius = -1; }).find("radius -1"),
             std::string::npos);
+  EXPECT_NE(message([](Set& s) { s.particles[3].density = 1.7e308; }).find("a mass of inf kg"),
+            std::string::npos);
   EXPECT_NE(message([](Set& s) { s.particles[3].density = 0; }).find("density 0"),
             std::string::npos);
   EXPECT_NE(message([](Set& s) { s.particles[3].type = 2; }).find("type 3"), std::string::npos);

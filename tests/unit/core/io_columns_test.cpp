@@ -172,8 +172,15 @@ TEST(Tables, SayThatADecimalCommaIsOne) {
   EXPECT_TRUE(has(error_of("id,type,radius,density,x,y\n1,1,0,1,2,7,8\n"), "decimal point"));
 }
 
+TEST(Tables, TakeACommaBeforeThreeDigitsForNoDecimalComma) {
+  const std::string error = error_of("id,type,radius,density,x,y\n1,1,0.1,\"2,650\",7,8\n");
+  EXPECT_TRUE(has(error, "t.csv:2:10: density is '2,650', which has a comma (write")) << error;
+  EXPECT_TRUE(has(error, "no mark between thousands")) << error;
+}
+
 TEST(Tables, SaySoWhereBlanksSeparateColumns) {
   EXPECT_TRUE(has(error_of("id type radius density x y\n1 1 1 1 1 1\n"), "separated by blanks"));
+  EXPECT_TRUE(has(error_of("id|type|radius|density|x|y\n1|1|1|1|1|1\n"), "separated by bars"));
 }
 
 std::string utf16(const std::string& text, bool is_little) {

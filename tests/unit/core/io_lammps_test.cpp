@@ -113,6 +113,16 @@ TEST(LammpsData, RefusesBondsThatCannotBe) {
             std::string::npos);
 }
 
+TEST(LammpsData, HasAVelocityForEveryParticleOrNone) {
+  const std::string text = std::string(kHeader) + kAtoms + kBonds + "\nVelocities\n\n";
+  const std::string first = "1 1 2 3 4 5 6\n";
+
+  EXPECT_EQ(read(text + first + "2 0 0 0 0 0 0\n").particles[0].velocity, Vec3(1, 2, 3));
+  EXPECT_NE(error_of(text + first).find("1 rows in Velocities"), std::string::npos);
+  EXPECT_NE(error_of(text + first + first).find("a second row of Velocities for particle 1"),
+            std::string::npos);
+}
+
 TEST(LammpsData, TellsADumpByItsFirstLine) {
   EXPECT_NE(error_of("ITEM: TIMESTEP\n0\n").find("a LAMMPS dump"), std::string::npos);
 }

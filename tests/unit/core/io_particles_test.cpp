@@ -173,7 +173,7 @@ TEST(ParticleFiles, ReadAMillionRowsInAFewSeconds) {
 constexpr const char* kData =
     "LAMMPS data file\n\n3 atoms\n2 atom types\n\n0 10 xlo xhi\n-1 8 ylo yhi\n-0.1 0.1 zlo zhi\n\n"
     "Atoms # sphere\n\n3 1 0.1 2000 1 2 0\n1 2 0.2 1000 3 4 0 0 0 0\n9 1 0.1 2000 5 6 0 # last\n\n"
-    "Velocities\n\n9 1 2 3 4 5 6\n1 0.5 0 0 0 0 -1\n";
+    "Velocities\n\n9 1 2 3 4 5 6\n1 0.5 0 0 0 0 -1\n3 0 0 0 0 0 0\n";
 
 TEST(ParticlesLammps, ReadsAtomsVelocitiesAndBox) {
   const ParticleFile file = parse_particles_lammps(kData, "a.data");

@@ -110,6 +110,12 @@ TEST(PrecisionOfADeck, IsRefusedWhereRoundingTakesTheMotionAway) {
   EXPECT_NE(refused.find("subtract (5000000, 0)"), std::string::npos) << refused;
 }
 
+TEST(PrecisionOfADeck, IsNoQuestionOfTheOriginWhereTheDomainIsThere) {
+  const std::string refused = verdict(0.0, 4e-15);
+  EXPECT_EQ(refused.find("refused: "), 0u) << refused;
+  EXPECT_NE(refused.find("a smaller domain or a larger time.step"), std::string::npos) << refused;
+}
+
 TEST(PrecisionOfADeck, IsAWarningWhereFewDigitsRemain) {
   EXPECT_EQ(verdict(5e6, 4e-3).find("warned: "), 0u) << verdict(5e6, 4e-3);
   EXPECT_EQ(verdict(5e6, 1.0), "fine");
