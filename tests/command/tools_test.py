@@ -20,7 +20,7 @@ def check_check():
     for ranks in (1, 2):
         done = run("check", "case.toml", ranks=ranks)
         expect(done.returncode == 0, f"check: {done.stderr}")
-        for word in ("350 disks", "sand–sand", "Stable step", "at most", "Memory", "floor"):
+        for word in ("350 disks", "sand–sand", "Stable step", "at most", "Memory", "floor", " 5.027 ", " 1759"):
             expect(done.stdout.count(word) >= 1, f"check: no '{word}' in {done.stdout}")
         expect(done.stdout.count("Stable step") == 1, "check printed more than once")
     done = run("check", "case.toml", "--set", "time.step=3e-3")

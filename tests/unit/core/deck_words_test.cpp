@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <barchan/core/deck/nearest.hpp>
 #include <barchan/core/deck/not_modelled.hpp>
 #include <barchan/core/deck/schema.hpp>
 
@@ -22,6 +23,14 @@ using deck_test::parse_edited;
 void expect_parts(const std::string& message, const std::vector<std::string>& parts) {
   for (const std::string& part : parts)
     EXPECT_NE(message.find(part), std::string::npos) << "'" << part << "' in '" << message << "'";
+}
+
+TEST(Nearest, CountsASwapOfTwoLettersAsOneMistake) {
+  EXPECT_EQ(deck::edit_distance("velocity", "velocity"), 0U);
+  EXPECT_EQ(deck::edit_distance("vleocity", "velocity"), 1U);
+  EXPECT_EQ(deck::edit_distance("velocit", "velocity"), 1U);
+  EXPECT_EQ(deck::edit_distance("velozity", "velocity"), 1U);
+  EXPECT_EQ(deck::edit_distance("vleoccity", "velocity"), 2U);
 }
 
 TEST(NotModelled, IsCalledThatInsteadOfAMisspeltKey) {

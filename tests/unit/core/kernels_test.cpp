@@ -429,8 +429,10 @@ void expect_rounded_outwards(VectorWidth width, double grains, bool slips) {
     const std::vector<double> expected =
         Dim == 2 ? std::vector<double>{-side * both, side * rub, rub}
                  : std::vector<double>{-side * both, 0.0, side * rub, -1.0, 0.0, -rub, 0.0};
+    EXPECT_EQ(s.component(k * L::kForce + 3), 2.0 * (1.0 + 10.0) * grains * kGrain.size)
+        << name_of(width) << ", " << Dim << "D, sizes";
     for (std::size_t c = 0; c < expected.size(); ++c) {
-      if (c == 3) continue;  // the sum of sizes
+      if (c == 3) continue;
       EXPECT_EQ(s.component(k * L::kForce + c), expected[c])
           << name_of(width) << ", " << Dim << "D, " << grains << " grains, component " << c;
     }

@@ -78,6 +78,21 @@ TEST(StepLimits, AreWhereTheSchemeStartsToDiverge) {
   }
 }
 
+TEST(StepLimits, OfSlidingCountThatAPushAlsoTurns) {
+  for (const int dimension : {2, 3}) {
+    Model model = model_of(1);
+    model.dimension = dimension;
+    model.domain.hi[2] = dimension == 3 ? 10.0 : 0.0;
+    model.contacts.constants[0].kt = 4e4;
+    const ParticleSet set{{disk(1, 1, 0.05), disk(2, 2, 0.05)}, {}};
+    const double m = dimension == 2 ? mass(0.05) : mass(0.05) * 4.0 / 3.0 * 0.05;
+    const double turning = dimension == 2 ? 2.0 : 2.5;  // m·r²/I
+
+    EXPECT_NEAR(limit(step_limits(model, set), "tangential a–a"),
+                2.0 * std::sqrt(0.5 * m / (1.0 + turning) / 4e4), 1e-12);
+  }
+}
+
 TEST(StepLimits, TakeAFixedParticleForInfinitelyHeavy) {
   const Model model = model_of(1);
   ParticleSet set{{disk(1, 1, 0.05), disk(2, 2, 0.05)}, {}};
