@@ -152,7 +152,7 @@ void BondSet<Dim>::add_to_rows(ParticleStore<Dim>& store, std::int32_t begin,
   for (; it != incidences_.end() && it->row < end; ++it) {
     if (is_broken(it->bond)) continue;
     const Record& record = force_[static_cast<std::size_t>(it->bond)][it->is_b ? 1 : 0];
-    double* f = store.f(it->row);
+    double* f = store.e(it->row);
     for (std::size_t c = 0; c < record.size(); ++c) f[c] += record[c];
   }
 }

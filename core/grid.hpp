@@ -12,7 +12,8 @@ namespace barchan {
 
 /// Squared distance between a point and the nearest image of another [m²].
 template <int Dim>
-double distance2(const PeriodicBox& box, const double* p, const double* q) {
+[[gnu::always_inline]] inline double distance2(const PeriodicBox& box, const double* p,
+                                               const double* q) {
   double d2 = 0.0;
   for (int c = 0; c < Dim; ++c) {
     double d = q[c] - p[c];

@@ -91,14 +91,14 @@ void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extra
   if (has_more) {
     if (frame_.has_moved(world_->dt))
       PassageWatch<Dim>(*world_, store_, passage_).look_at(walls_.list(), {begin, end});
-    store_.take_out(world_->grain.rounder(), begin, end);
+    store_.start_extra(begin, end);
     bonds_.add_to_rows(store_, begin, end);
     const double dt = spring_step(frame_, world_->dt);
     walls_.add_to_rows(store_, wall_frame(dt), wall_sums_, begin, end);
     if (!store_.external.empty()) {
       const auto from = static_cast<std::size_t>(begin) * L::kForce,
                  to = static_cast<std::size_t>(end) * L::kForce;
-      for (std::size_t c = from; c < to; ++c) store_.force[c] += store_.external[c];
+      for (std::size_t c = from; c < to; ++c) store_.extra[c - from] += store_.external[c];
     }
   }
   RowJob rows{store_.motion.data(),
@@ -112,7 +112,7 @@ void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extra
               frame_.local_damping,
               quick_speed(),
               world_->grain.rounder(),
-              has_more};
+              has_more ? store_.extra.data() : nullptr};
   const RowKernel advance =
       frame_.local_damping != 0.0 ? world_->kernels.rows_damped : world_->kernels.rows;
   const RowSpeeds speeds = advance(rows);

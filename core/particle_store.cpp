@@ -40,9 +40,15 @@ void ParticleStore<Dim>::take_out(double rounder, std::int32_t begin, std::int32
 }
 
 template <int Dim>
+void ParticleStore<Dim>::start_extra(std::int32_t begin, std::int32_t end) {
+  extra_begin = begin;
+  extra.assign(static_cast<std::size_t>(end - begin) * L::kForce, 0.0);
+}
+
+template <int Dim>
 std::size_t ParticleStore<Dim>::bytes() const {
   return 8 * (motion.capacity() + spin.capacity() + force.capacity() + reference.capacity() +
-              id.capacity() + key.capacity() + external.capacity()) +
+              id.capacity() + key.capacity() + external.capacity() + extra.capacity()) +
          type.capacity() + flags.capacity();
 }
 

@@ -24,6 +24,8 @@ struct ParticleStore {
   AlignedVector<std::uint8_t> type;  ///< material
   AlignedVector<std::uint8_t> flags;
   AlignedVector<double> external;  ///< owned: force records added each step; empty unless asked for
+  AlignedVector<double> extra;     ///< force records beside contacts, of rows from extra_begin on
+  std::int32_t extra_begin = 0;
   std::int32_t num_owned = 0;
   std::array<std::int32_t, 2> num_ghosts{};
 
@@ -55,6 +57,10 @@ struct ParticleStore {
   [[nodiscard]] double* f(std::int32_t i) {
     return force.data() + std::size_t{L::kForce} * static_cast<std::size_t>(i);
   }
+  /// Of walls, bonds and callers. @pre start_extra() with this row
+  [[nodiscard]] double* e(std::int32_t i) {
+    return extra.data() + std::size_t{L::kForce} * static_cast<std::size_t>(i - extra_begin);
+  }
   [[nodiscard]] double radius(std::int32_t i) const { return x(i)[L::kRadius]; }
   [[nodiscard]] double inverse_mass(std::int32_t i) const { return x(i)[L::kInverseMass]; }
 
@@ -62,6 +68,8 @@ struct ParticleStore {
   void resize_for_ghosts(double rounder = 0.0);
   /// Forces of rows [begin, end) start from the rounder.
   void start_forces(double rounder, std::int32_t begin, std::int32_t end);
+  /// Extra forces of rows [begin, end) are zero; those of other rows are gone.
+  void start_extra(std::int32_t begin, std::int32_t end);
   /// Takes the rounder out of the forces of rows [begin, end).
   void take_out(double rounder, std::int32_t begin, std::int32_t end);
   [[nodiscard]] std::size_t bytes() const;

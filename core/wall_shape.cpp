@@ -61,9 +61,7 @@ void WallShape<Dim>::close_along(const Vec3& direction, double& half) {
 
 template <int Dim>
 WallFoot WallShape<Dim>::foot(const Vec3& point, const WallImage& image, const double* x) const {
-  Vec3 d = Vec3::Zero();  // to the image's point
-  for (int c = 0; c < Dim; ++c)
-    d[c] = (point[c] - x[c]) + image[static_cast<std::size_t>(c)] * box_.length[c];
+  const Vec3 d = to_point(point, image, x);
   const double height = -dot(d, normal_);  // of the position over the wall
   WallFoot foot;
   foot.inside = kEndless;
@@ -86,12 +84,18 @@ WallFoot WallShape<Dim>::foot(const Vec3& point, const WallImage& image, const d
     }
     foot.distance = std::sqrt(d2);
   }
-  for (int c = 0; c < Dim; ++c) {
-    foot.arm[c] = foot.to_foot[c] - d[c];
-    if (box_.inverse[c] != 0.0 && !has_images_[static_cast<std::size_t>(c)])
-      foot.arm[c] -= box_.length[c] * std::rint(foot.arm[c] * box_.inverse[c]);
-  }
   return foot;
+}
+
+template <int Dim>
+Vec3 WallShape<Dim>::arm(const Vec3& point, const WallImage& image, const double* x,
+                         const WallFoot& foot) const {
+  Vec3 arm = foot.to_foot - to_point(point, image, x);
+  for (int c = 0; c < Dim; ++c) {
+    if (box_.inverse[c] != 0.0 && !has_images_[static_cast<std::size_t>(c)])
+      arm[c] -= box_.length[c] * std::rint(arm[c] * box_.inverse[c]);
+  }
+  return arm;
 }
 
 template <int Dim>

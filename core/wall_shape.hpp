@@ -18,7 +18,6 @@ inline constexpr std::int32_t kFarthestImage = 1 << 28;  ///< along any axis
 struct WallFoot {
   double distance = 0.0;        ///< [m]; of a plane the height over it, below zero behind it
   Vec3 to_foot = Vec3::Zero();  ///< from the position [m]
-  Vec3 arm = Vec3::Zero();      ///< from the wall's point (of this image) to the foot [m]
   double inside = 0.0;  ///< how far the foot is from the wall's rim; infinite on a plane [m]
 };
 
@@ -37,6 +36,9 @@ class WallShape {
 
   /// @param point  of the wall, wherever it has moved to [m]. @param x  a position [m]
   [[nodiscard]] WallFoot foot(const Vec3& point, const WallImage& image, const double* x) const;
+  /// From the wall's point, of this image, to a foot [m].
+  [[nodiscard]] Vec3 arm(const Vec3& point, const WallImage& image, const double* x,
+                         const WallFoot& foot) const;
   /// Of all images the nearest one.
   [[nodiscard]] WallFoot foot(const Vec3& point, const double* x) const;
   /// Calls visit(image) for the images that are nearer than `reach`, in ascending order.
@@ -49,6 +51,13 @@ class WallShape {
   [[nodiscard]] const Vec3& normal() const { return normal_; }
 
  private:
+  /// From a position to the image's point.
+  [[nodiscard]] Vec3 to_point(const Vec3& point, const WallImage& image, const double* x) const {
+    Vec3 d = Vec3::Zero();
+    for (int c = 0; c < Dim; ++c)
+      d[c] = (point[c] - x[c]) + image[static_cast<std::size_t>(c)] * box_.length[c];
+    return d;
+  }
   /// Images along one axis: [lo, hi].
   struct Stretch {
     std::int32_t lo = 0, hi = 0;

@@ -55,7 +55,7 @@ PairState<S, Dim> pair_with_wall(const ParticleStore<Dim>& s, std::int32_t row, 
 
 template <int Dim>
 void add_to_row(ParticleStore<Dim>& store, std::int32_t i, const PairForce<S, Dim>& f) {
-  double* row = store.f(i);
+  double* row = store.e(i);
   row[0] += f.fx, row[1] += f.fy;
   if constexpr (Dim == 2) {
     row[2] += f.ft;
@@ -175,15 +175,14 @@ typename WallContacts<Dim>::Push WallContacts<Dim>::push(const ParticleStore<Dim
   const WallFoot foot = foot_of(store, frame.walls, contact);
   if (const auto* other = felt_instead(store, frame.walls, place, foot)) {
     std::copy(std::begin(other->spring), std::end(other->spring), contact.spring);
-    return {{}, foot.arm, Vec3::Zero()};
+    return {{}, Vec3::Zero()};
   }
   Approach to = approach_of(foot, spec.normal, store.radius(contact.row));
   to.inverse_mass = store.inverse_mass(contact.row) + (spec.is_loaded ? 1.0 / spec.mass : 0.0);
   const auto pair = pair_with_wall(store, contact.row, to, state.velocity);
   const auto type = store.type[static_cast<std::size_t>(contact.row)];
   const auto law = constants_of(*frame.laws, frame.laws->code(spec.material, type));
-  Push p{respond_as(frame.laws->damping(), law, pair, frame.dt, contact.spring), foot.arm,
-         Vec3::Zero()};
+  Push p{respond_as(frame.laws->damping(), law, pair, frame.dt, contact.spring), Vec3::Zero()};
   p.on_wall[0] = -p.on_particle.fx;
   p.on_wall[1] = -p.on_particle.fy;
   if constexpr (Dim == 3) p.on_wall[2] = -p.on_particle.fz;
@@ -235,8 +234,12 @@ void WallContacts<Dim>::measure(const ParticleStore<Dim>& store, const Frame& fr
     WallContact<Dim> contact = list_[k];
     const Push p = push(store, frame, k, contact);
     if (p.on_wall.isZero(0.0)) continue;
-    WallSums& sum = sums[static_cast<std::size_t>(contact.wall)];
-    const Vec3 &r = p.arm, &f = p.on_wall;
+    const auto w = static_cast<std::size_t>(contact.wall);
+    WallSums& sum = sums[w];
+    const Vec3 r =
+        frame.walls.shapes[w].arm(frame.walls.states[w].point, contact.image, store.x(contact.row),
+                                  foot_of(store, frame.walls, contact));
+    const Vec3& f = p.on_wall;
     const double about[3] = {r[1] * f[2] - r[2] * f[1], r[2] * f[0] - r[0] * f[2],
                              r[0] * f[1] - r[1] * f[0]};
     for (int c = 0; c < 3; ++c) {

@@ -113,7 +113,7 @@ class WallContacts {
   /// Computes contacts with loaded plates, keeps their forces for add_to_rows, and adds the forces
   /// on the plates to `sums`, one a wall.
   void press(const ParticleStore<Dim>& store, const Frame& frame, std::span<WallSums> sums);
-  /// Adds wall forces to rows [begin, end). @pre press(), where there are loaded plates
+  /// Adds wall forces to the extra forces of rows [begin, end). @pre press(), where there are loaded plates
   /// @param sums  one a wall; the work of walls with a given velocity is added up
   void add_to_rows(ParticleStore<Dim>& store, const Frame& frame, std::span<WallSums> sums,
                    std::int32_t begin, std::int32_t end);
@@ -124,7 +124,7 @@ class WallContacts {
   using Force = PairForce<simd::Scalar, Dim>;  ///< on the particle
   struct Push {
     Force on_particle;
-    Vec3 arm, on_wall;
+    Vec3 on_wall;
   };
   /// Of the contact at this place of the list, whose spring is stretched in `contact`.
   Push push(const ParticleStore<Dim>& store, const Frame& frame, std::size_t place,

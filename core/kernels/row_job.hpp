@@ -25,8 +25,8 @@ struct RowJob {
   double local_damping = 0.0;
   double most_speed =
       std::numeric_limits<double>::infinity();  ///< of a component of velocity [m/s]
-  double rounder = 0.0;   ///< ForceGrain::rounder(): what sums of forces start from [N]
-  bool is_plain = false;  ///< the sums are forces already: the rounder is taken out
+  double rounder = 0.0;           ///< ForceGrain::rounder(): what sums of forces start from [N]
+  const double* extra = nullptr;  ///< force records that are added, row `begin` first; or none
 };
 
 /// How fast rows drifted.

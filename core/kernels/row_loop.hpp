@@ -28,46 +28,51 @@ RowSpeeds advance_rows(const RowJob& job) {
   const double most = job.most_speed, any = std::numeric_limits<double>::infinity();
   const auto limit = Q::of(most, most, Dim == 3 ? most : any, any);
   auto fast = Q::beyond(zero, zero);
-  const auto start = Q::of(job.rounder, job.rounder, job.rounder, 0.0),
-             rounder = job.is_plain ? zero : start;
+  const auto rounder = Q::of(job.rounder, job.rounder, job.rounder, 0.0);
+  alignas(64) constexpr double kNone[8] = {};
+  const double* extra = job.extra != nullptr ? job.extra : kNone;
+  const std::int64_t stride = job.extra != nullptr ? Layout<Dim>::kForce : 0;
   auto top_force = zero;
   if constexpr (Dim == 2) {
     const auto gain = Q::of(k, k, turn, 0.0), drift = Q::of(job.dt, job.dt, 0.0, 0.0);
     const auto gravity = Q::of(job.gravity[0] * k, job.gravity[1] * k, 0.0, 0.0);
-    for (std::int32_t i = job.begin; i < job.end; ++i) {
+    for (std::int32_t i = job.begin; i < job.end; ++i, extra += stride) {
       double *x = job.motion + 8 * static_cast<std::int64_t>(i),
              *f = job.force + 4 * static_cast<std::int64_t>(i);
       const auto v = Q::load(x + 4), im = Q::last(v);
       const auto sum = Q::load(f);
       top_force = Q::max(top_force, sum);
-      const auto dv = (sum - rounder) * (im * gain) + Q::where_positive(im, gravity);
+      const auto dv =
+          ((sum - rounder) + Q::load(extra)) * (im * gain) + Q::where_positive(im, gravity);
       const auto w = kicked<Q, Damped>(v, dv, alpha);
       fast = Q::either(fast, Q::beyond(w, limit));
       Q::store(x + 4, w);
       Q::store(x, Q::load(x) + drift * w);
-      Q::store(f, start);
+      Q::store(f, rounder);
     }
   } else {
     const auto gain = Q::of(k, k, k, 0.0), drift = Q::of(job.dt, job.dt, job.dt, 0.0);
     const auto twist = Q::of(turn, turn, turn, 0.0);
     const auto gravity = Q::of(job.gravity[0] * k, job.gravity[1] * k, job.gravity[2] * k, 0.0);
-    for (std::int32_t i = job.begin; i < job.end; ++i) {
+    for (std::int32_t i = job.begin; i < job.end; ++i, extra += stride) {
       double *x = job.motion + 8 * static_cast<std::int64_t>(i),
              *f = job.force + 8 * static_cast<std::int64_t>(i);
       double* u = job.spin + 4 * static_cast<std::int64_t>(i);
       const auto v = Q::load(x + 4), im = Q::last(v);
       const auto sum = Q::load(f);
       top_force = Q::max(top_force, sum);
-      const auto dv = (sum - rounder) * (im * gain) + Q::where_positive(im, gravity);
+      const auto dv =
+          ((sum - rounder) + Q::load(extra)) * (im * gain) + Q::where_positive(im, gravity);
       const auto w = kicked<Q, Damped>(v, dv, alpha);
       fast = Q::either(fast, Q::beyond(w, limit));
       Q::store(x + 4, w);
       top = Q::max(top, Q::abs(w));
       Q::store(x, Q::load(x) + drift * w);
       const auto s = Q::load(u);
-      Q::store(u, kicked<Q, Damped>(s, (Q::load(f + 4) - rounder) * (im * twist), alpha));
-      Q::store(f, start);
-      Q::store(f + 4, start);
+      Q::store(u, kicked<Q, Damped>(
+                      s, ((Q::load(f + 4) - rounder) + Q::load(extra + 4)) * (im * twist), alpha));
+      Q::store(f, rounder);
+      Q::store(f + 4, rounder);
     }
   }
   alignas(32) double speed[4], force[4];

@@ -16,6 +16,7 @@ ParticleStore<Dim> row_of(int count, double spacing) {
   ParticleStore<Dim> s;
   s.num_owned = count;
   s.resize_for_ghosts();
+  s.start_extra(0, s.num_owned);
   for (std::int32_t i = 0; i < count; ++i) {
     s.x(i)[0] = spacing * i;
     s.x(i)[Layout<Dim>::kRadius] = 1.0;
@@ -67,8 +68,8 @@ void expect_pulls_together() {
   bonds.add_to_rows(store, 0, 2);
 
   const double expected = bond_section<Dim>(laws[0], 2.0, 1.0, 1.0).kn * 0.1;
-  EXPECT_NEAR(store.f(0)[0], expected, 1e-9 * expected);
-  EXPECT_EQ(store.f(1)[0], -store.f(0)[0]);
+  EXPECT_NEAR(store.e(0)[0], expected, 1e-9 * expected);
+  EXPECT_EQ(store.e(1)[0], -store.e(0)[0]);
   EXPECT_NEAR(bonds.energy(0, store, laws, {}), 0.5 * expected * 0.1, 1e-9);
 }
 
@@ -125,7 +126,7 @@ TEST(Bonds, BreakAtTheirTensileStrengthAndStayBroken) {
 
   EXPECT_TRUE(bonds.is_broken(0));
   EXPECT_EQ(bonds.num_broken(), 1);
-  EXPECT_EQ(store.f(0)[0], 0.0);
+  EXPECT_EQ(store.e(0)[0], 0.0);
   bonds.drop_broken();
   EXPECT_TRUE(bonds.empty());
 }
@@ -142,9 +143,9 @@ TEST(Bonds, BendingMomentActsAgainstRelativeRotation) {
   bonds.add_to_rows(store, 0, 2);
 
   const double moment = bond_section<2>(elastic(), 2.0, 1.0, 1.0).bending * 2.0 * 1e-3;
-  EXPECT_NEAR(store.f(0)[2], moment, 1e-12);
-  EXPECT_NEAR(store.f(1)[2], -moment, 1e-12);
-  EXPECT_NEAR(store.f(0)[1], 0.0, 1e-12);
+  EXPECT_NEAR(store.e(0)[2], moment, 1e-12);
+  EXPECT_NEAR(store.e(1)[2], -moment, 1e-12);
+  EXPECT_NEAR(store.e(0)[1], 0.0, 1e-12);
 }
 
 TEST(Bonds, ConserveMomentumAndAngularMomentumIn3D) {
@@ -166,7 +167,7 @@ TEST(Bonds, ConserveMomentumAndAngularMomentumIn3D) {
 
   // Torque about particle 1: T1 + T2 + d × F2 = 0; records hold torque over radius, and radii
   // are 1.
-  const double *f = store.f(0), *g = store.f(1), d = 2.05;
+  const double *f = store.e(0), *g = store.e(1), d = 2.05;
   const double lever[3] = {0.0, -d * g[2], d * g[1]};
   for (int c = 0; c < 3; ++c) {
     EXPECT_EQ(f[c], -g[c]);

@@ -134,7 +134,7 @@ RowSpeeds sum_and_advance(const RowJob& job) {
   for (std::int32_t i = job.begin; i < job.end; ++i) {
     for (int c = 0; c < Dim; ++c)
       total_force[static_cast<std::size_t>(c)].add(job.force[i * Layout<Dim>::kForce + c] -
-                                                   (job.is_plain ? 0.0 : job.rounder));
+                                                   job.rounder);
   }
   return real_rows(job);
 }

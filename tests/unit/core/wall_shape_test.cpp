@@ -150,9 +150,13 @@ TEST(WallShape, ArmIsTheSameOfEveryImage) {
   const WallShape<2> floor(spec_of(WallKind::Plane, {0.0, 1.0, 0.0}), box_of(1.0));
   const double low[2] = {0.05, 0.1}, high[2] = {1.05, 0.1};
 
-  EXPECT_NEAR(plate.foot({0.9, 0.0, 0.0}, low).arm[0], 0.15, 1e-15);
-  EXPECT_NEAR(plate.foot({0.9, 0.0, 0.0}, high).arm[0], 0.15, 1e-15);
-  EXPECT_NEAR(floor.foot({0.9, 0.0, 0.0}, low).arm[0], 0.15, 1e-15);
+  const Vec3 point(0.9, 0.0, 0.0);
+  const auto arm = [&](const WallShape<2>& shape, const WallImage& image, const double* x) {
+    return shape.arm(point, image, x, shape.foot(point, image, x))[0];
+  };
+  EXPECT_NEAR(arm(plate, {-1, 0, 0}, low), 0.15, 1e-15);
+  EXPECT_NEAR(arm(plate, {0, 0, 0}, high), 0.15, 1e-15);
+  EXPECT_NEAR(arm(floor, {0, 0, 0}, low), 0.15, 1e-15);
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ ParticleStore<Dim> one_particle(const Vec3& x, double radius) {
   ParticleStore<Dim> s;
   s.num_owned = 1;
   s.resize_for_ghosts();
+  s.start_extra(0, s.num_owned);
   for (int c = 0; c < Dim; ++c) s.x(0)[c] = x[c];
   s.x(0)[Layout<Dim>::kRadius] = radius;
   s.x(0)[Layout<Dim>::kInverseMass] = 1.0;
@@ -58,7 +59,7 @@ TEST(Walls, PushAlongTheNormalAndCountForceTorqueAndWork) {
   contacts.measure(store, walls.frame(), measured);
 
   ASSERT_EQ(contacts.list().size(), 1U);
-  EXPECT_NEAR(store.f(0)[1], 10.0, 1e-9);
+  EXPECT_NEAR(store.e(0)[1], 10.0, 1e-9);
   EXPECT_NEAR(stepped[0].work.value(), 10.0 * 2.0 * 0.01, 1e-9);
   EXPECT_NEAR(measured[0].force[1].value(), -10.0, 1e-9);
   EXPECT_NEAR(measured[0].torque[2].value(), -20.0, 1e-9);
@@ -78,7 +79,7 @@ TEST(Walls, OnAndBehindAWallThePushGoesOutAndGrowsWithTheDepth) {
     // A plate has two sides, so a centre beyond it is pushed to the other one.
     const double plate =
         height < 0.0 ? -100.0 * std::max(0.0, 0.5 + height) : 100.0 * (0.5 - height);
-    EXPECT_NEAR(store.f(0)[1], 100.0 * (0.5 - height) + plate, 1e-9) << height;
+    EXPECT_NEAR(store.e(0)[1], 100.0 * (0.5 - height) + plate, 1e-9) << height;
   }
 }
 
@@ -99,8 +100,8 @@ TEST(Walls, KeepWhatLoadedPlatesPressForTheRows) {
 
   EXPECT_NEAR(pressed[1].force[1].value(), -10.0, 1e-9);
   EXPECT_EQ(pressed[0].force[1].value(), 0.0);
-  EXPECT_NEAR(store.f(0)[0], 20.0, 1e-9);
-  EXPECT_NEAR(store.f(0)[1], 20.0, 1e-9);  // the plate stands at the floor: both push
+  EXPECT_NEAR(store.e(0)[0], 20.0, 1e-9);
+  EXPECT_NEAR(store.e(0)[1], 20.0, 1e-9);  // the plate stands at the floor: both push
   EXPECT_EQ(works[1].work.value(), 0.0);
 }
 
