@@ -64,7 +64,8 @@ class BondSet {
                                         std::span<const BondLaw> laws, const PeriodicBox& box,
                                         double dt);
 
-  /// Adds the kept forces to the extra ones of rows [begin, end), each row's in order of the partner's id.
+  /// Adds the kept forces to the extra ones of rows [begin, end), each row's in order of the
+  /// partner's id.
   void add_to_rows(ParticleStore<Dim>& store, std::int32_t begin, std::int32_t end) const;
 
   // The published exchange: one side of a cut computes, the other takes the forces. kExported

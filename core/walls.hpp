@@ -113,7 +113,8 @@ class WallContacts {
   /// Computes contacts with loaded plates, keeps their forces for add_to_rows, and adds the forces
   /// on the plates to `sums`, one a wall.
   void press(const ParticleStore<Dim>& store, const Frame& frame, std::span<WallSums> sums);
-  /// Adds wall forces to the extra forces of rows [begin, end). @pre press(), where there are loaded plates
+  /// Adds wall forces to the extra ones of rows [begin, end). @pre press(), where there are loaded
+  /// plates
   /// @param sums  one a wall; the work of walls with a given velocity is added up
   void add_to_rows(ParticleStore<Dim>& store, const Frame& frame, std::span<WallSums> sums,
                    std::int32_t begin, std::int32_t end);

@@ -93,8 +93,8 @@ void expect_the_short_way() {
   bonds.add_to_rows(store, 0, 2);
 
   const double expected = bond_section<Dim>(laws[0], 2.0, 1.0, 1.0).kn * 0.1;
-  EXPECT_NEAR(store.f(0)[0], -expected, 1e-9 * expected);
-  EXPECT_EQ(store.f(1)[0], -store.f(0)[0]);
+  EXPECT_NEAR(store.e(0)[0], -expected, 1e-9 * expected);
+  EXPECT_EQ(store.e(1)[0], -store.e(0)[0]);
   EXPECT_NEAR(bonds.energy(0, store, laws, box), 0.5 * expected * 0.1, 1e-9);
 }
 

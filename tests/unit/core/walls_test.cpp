@@ -123,8 +123,8 @@ TEST(Walls, ALoadedPlateIsNotPressedAtItsEndByWhatLiesOnThePlateBesideIt) {
     contacts.add_to_rows(store, walls.frame(), works, 0, 1);
 
     EXPECT_NEAR(pressed[1].force[1].value(), x < 0.0 ? 0.0 : -10.0, 1e-9) << x;
-    EXPECT_NEAR(store.f(0)[0], 0.0, 1e-9) << x;
-    EXPECT_NEAR(store.f(0)[1], 10.0, 1e-9) << x;
+    EXPECT_NEAR(store.e(0)[0], 0.0, 1e-9) << x;
+    EXPECT_NEAR(store.e(0)[1], 10.0, 1e-9) << x;
   }
 }
 
