@@ -184,11 +184,8 @@ void print_step(const Model& model, const std::vector<StepLimit>& limits) {
   }
 }
 
-void print_forecast(const Model& model, const ParticleSet& particles) {
-  for (const std::string& what : speed_warnings(model, particles))
-    std::printf("  Warning: %s.\n", what.c_str());
-  for (const std::string& what : precision_warnings(model, particles))
-    std::printf("  Warning: %s.\n", what.c_str());
+void print_warnings(const std::vector<std::string>& warnings) {
+  for (const std::string& what : warnings) std::printf("  Warning: %s.\n", what.c_str());
 }
 
 }  // namespace
@@ -204,11 +201,11 @@ void check_deck(const CheckArguments& arguments) {
   print_contacts(loaded);
   print_grain(model, loaded.particles);
   print_walls(model);
-  for (const std::string& what : walls_to_come_in_particles(model, loaded.particles))
-    std::printf("  Warning: %s.\n", what.c_str());
+  print_warnings(walls_to_come_in_particles(model, loaded.particles));
   print_stages(model);
   print_step(model, limits);
-  print_forecast(model, loaded.particles);
+  print_warnings(speed_warnings(model, loaded.particles));
+  print_warnings(precision_warnings(model, loaded.particles));
   print_strips(loaded, arguments.ranks);
   std::fflush(stdout);
   check_precision(model, loaded.particles);

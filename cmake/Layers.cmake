@@ -9,11 +9,18 @@ function(barchan_link_headers layer)
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/${layer} ${root}/barchan/${layer} SYMBOLIC)
 endfunction()
 
-# Reading Eigen and the standard library is half of a small file's compile time. A compiler cache does better without.
+# Reading the libraries is half of a small file's compile time. A compiler cache does better without.
 function(barchan_precompile target)
   if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
-    target_precompile_headers(${target} PRIVATE
-      <Eigen/Core> <algorithm> <array> <functional> <memory> <span> <string> <vector> ${ARGN})
+    target_precompile_headers(${target} PRIVATE <Eigen/Core> <fmt/format.h>
+      <algorithm> <array> <cmath> <functional> <map> <memory> <optional> <span> <string> <vector> ${ARGN})
+  endif()
+endfunction()
+
+# For a target that is compiled with the same flags as another one.
+function(barchan_precompiled_with target other)
+  if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    target_precompile_headers(${target} REUSE_FROM ${other})
   endif()
 endfunction()
 

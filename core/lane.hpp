@@ -217,20 +217,15 @@ class Lane {
   [[nodiscard]] PairJob block_job(PairList& list, PairBlock& block, double travel);
   void pick_touching(PairList& list, PairBlock& block, PairJob& pairs, double travel);
   [[nodiscard]] double packing_margin() const;  ///< [m]
-  // lane_speeds.cpp
   /// Of a component of velocity, beyond which step_travel() is looked at [m/s].
   [[nodiscard]] double quick_speed() const {
     return world_->quick_travel / (std::sqrt(double{Dim}) * world_->dt);
   }
-  [[nodiscard]] double step_travel(std::int32_t row) const;
-  [[nodiscard]] double fastest_travel(Rows rows) const;
   [[nodiscard]] bool is_beyond(double travel) const {
     return !(travel <= world_->most_travel(lists_skin_));
   }
   void judge_speeds(Rows rows);
   void find_quick();
-  void look_for_passages();
-  void look_for_passages(Side side);
   void pack(PairList& list, PairBlock& block, const std::uint8_t* masks);
   [[nodiscard]] bool packs() const {
     return world_->kernels.narrow != nullptr && world_->search == ContactSearchKind::Cells;

@@ -210,6 +210,18 @@ void Lane<Dim>::restore_history() {
   find_quick();
 }
 
+/// After rows have come and gone, and lists have another skin.
+template <int Dim>
+void Lane<Dim>::find_quick() {
+  has_quick_ = false;
+  judge_speeds({0, store_.num_owned});
+  for (const Side side : {Left, Right}) {
+    const std::int32_t begin = store_.ghost_begin(side);
+    const Rows ghosts{begin, begin + store_.num_ghosts[static_cast<std::size_t>(side)]};
+    bands_[side].has_quick = farthest_travel(store_, world_->dt, ghosts) > world_->quick_travel;
+  }
+}
+
 template <int Dim>
 void Lane<Dim>::restore_wall_history() {
   walls_.search(store_, world_->wall_view(), world_->skin);

@@ -55,7 +55,7 @@ void Lane<Dim>::begin_step(const StepFrame& frame) {
   speeds_ = {};
   looks_ = std::exchange(has_quick_, false) && frame_.has_moved(world_->dt);
   if (world_->search == ContactSearchKind::AllPairs) research_owned();
-  look_for_passages();
+  if (looks_) PassageWatch<Dim>(*world_, store_, passage_).look_at(pairs_);
   rows_done_ = bands_[Left].exists ? bands_[Left].rows.end : 0;
   wall_sums_.resize(world_->walls.size());
   const bool is_carry_due = ++steps_since_start_ % kCarryEvery == 0;
@@ -121,6 +121,13 @@ void Lane<Dim>::finish_rows(std::int32_t begin, std::int32_t end, bool has_extra
   if (wraps_now_) wrap_rows({begin, end});
 }
 
+template <int Dim>
+void Lane<Dim>::judge_speeds(Rows rows) {
+  const double travel = farthest_travel(store_, world_->dt, rows);
+  is_beyond_ = is_beyond_ || is_beyond(travel);
+  has_quick_ = has_quick_ || travel > world_->quick_travel;
+}
+
 /// At fixed steps, for what a position loses around the end of the box is part of the state.
 template <int Dim>
 void Lane<Dim>::wrap_rows(Rows rows) {
@@ -180,7 +187,8 @@ void Lane<Dim>::finish_band(Side side) {
   const simd::DenormalsAreZero quiet;
   Band& band = bands_[side];
   if (world_->search == ContactSearchKind::AllPairs) research_across(side);
-  look_for_passages(side);
+  if (looks_ || (band.has_quick && frame_.has_moved(world_->dt)))
+    PassageWatch<Dim>(*world_, store_, passage_).look_at(band.across);
   // Bonds come before contacts here too, as in begin_step: a pair whose bond breaks is in contact
   // in the same step.
   if (!bonds_.empty()) compute_bonds(side == Left ? BondSet<Dim>::Left : BondSet<Dim>::Right);

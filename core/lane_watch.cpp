@@ -91,7 +91,8 @@ std::int32_t Lane<Dim>::first_fast_row() const {
   std::int32_t first = -1;
   const auto id = [this](std::int32_t row) { return store_.id[static_cast<std::size_t>(row)]; };
   for (std::int32_t i = 0; i < store_.num_owned; ++i) {
-    if (is_beyond(step_travel(i)) && (first < 0 || id(i) < id(first))) first = i;
+    if (is_beyond(step_travel(store_, world_->dt, i)) && (first < 0 || id(i) < id(first)))
+      first = i;
   }
   return first >= 0 ? first : fastest_row();
 }

@@ -61,6 +61,26 @@ Course course_of(const double* d, const double* s, double reach) {
 }  // namespace
 
 template <int Dim>
+double step_travel(const ParticleStore<Dim>& store, double dt, std::int32_t row) {
+  const double *x = store.x(row), *v = store.v(row), *u = store.u(row);
+  double v2 = 0.0, zero = 0.0;
+  for (int c = 0; c < Dim; ++c) v2 += v[c] * v[c], zero += 0.0 * x[c];
+  for (int c = 0; c < kSpins<Dim>; ++c) zero += 0.0 * u[c];
+  return std::sqrt(v2) * dt + zero;
+}
+
+template <int Dim>
+double farthest_travel(const ParticleStore<Dim>& store, double dt, Rows rows) {
+  double most = 0.0;
+  for (std::int32_t i = rows.begin; i < rows.end; ++i) {
+    const double travel = step_travel(store, dt, i);
+    if (!(travel <= most))
+      most = std::isnan(travel) ? std::numeric_limits<double>::infinity() : travel;
+  }
+  return most;
+}
+
+template <int Dim>
 Suspect suspect_of(const ParticleStore<Dim>& store, std::int32_t row) {
   Suspect s;
   s.id = store.id[static_cast<std::size_t>(row)];
@@ -147,6 +167,10 @@ void PassageWatch<Dim>::look_at(std::span<const WallContact<Dim>> contacts, Rows
   }
 }
 
+template double step_travel(const ParticleStore<2>&, double, std::int32_t);
+template double step_travel(const ParticleStore<3>&, double, std::int32_t);
+template double farthest_travel(const ParticleStore<2>&, double, Rows);
+template double farthest_travel(const ParticleStore<3>&, double, Rows);
 template Suspect suspect_of(const ParticleStore<2>&, std::int32_t);
 template Suspect suspect_of(const ParticleStore<3>&, std::int32_t);
 template class PassageWatch<2>;

@@ -71,6 +71,13 @@ class PassageWatch {
   Passage& found_;
 };
 
+/// How far a row moved in its last step [m]; not a number where its state is none.
+template <int Dim>
+[[nodiscard]] double step_travel(const ParticleStore<Dim>& store, double dt, std::int32_t row);
+/// The farthest of some rows [m]; infinite where a state is not a number.
+template <int Dim>
+[[nodiscard]] double farthest_travel(const ParticleStore<Dim>& store, double dt, Rows rows);
+
 template <int Dim>
 [[nodiscard]] Suspect suspect_of(const ParticleStore<Dim>& store, std::int32_t row);
 

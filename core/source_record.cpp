@@ -32,6 +32,15 @@ class Hash {
     for (const Vec3& v : {p.position, p.velocity, p.omega}) add(v);
     add(static_cast<std::uint8_t>(p.fixed));
   }
+  void add(const BondData& b) {
+    add(b.id_a);
+    add(b.id_b);
+    add(b.law);
+    add(b.length);
+    add(b.shear);
+    add(b.bending);
+    add(b.twisting);
+  }
   [[nodiscard]] std::uint64_t value() const { return XXH3_64bits_digest(state_.get()); }
 
  private:
@@ -53,9 +62,7 @@ void add_bonds(const ParticleSet& made, std::span<const std::size_t> begins,
         std::lower_bound(source_of.begin(), source_of.end(), std::pair{bond.id_a, std::size_t{0}});
     if (it == source_of.end()) continue;
     Hash& hash = hashes[it->second];
-    hash.add(bond.id_a);
-    hash.add(bond.id_b);
-    hash.add(bond.law);
+    hash.add(bond);
   }
 }
 

@@ -144,8 +144,7 @@ std::string Simulation::EngineOf<Dim>::remedy_for_travel(double travel) const {
     return "a run from step 0 with a smaller time.step, more damping or less overlap would help";
   return fmt::format(
       "search.skin = {:.2g} or more allows for it, also from a checkpoint before; so does a "
-      "smaller "
-      "time.step, from step 0 on",
+      "smaller time.step, from step 0 on",
       2.1 * travel);
 }
 

@@ -7,6 +7,7 @@
 
 #include <barchan/core/bytes.hpp>
 #include <barchan/core/error.hpp>
+#include <barchan/core/world.hpp>
 
 namespace barchan {
 namespace {
@@ -131,7 +132,7 @@ CheckpointState decode_state(std::span<const std::byte> bytes, const std::string
       state.stage_begin <= state.step && state.skin >= 0.0 && std::isfinite(state.skin) &&
       positive(state.reach) && state.start_particles >= 0 && positive(state.grain) &&
       state.overlap_limit > 0.0 && state.look_step >= -1 && state.look_step <= state.step &&
-      (state.look_step < 0 || state.step - state.look_step < 16);
+      (state.look_step < 0 || state.step - state.look_step < kEventSteps);
   if (!is_sane) refuse(file, "the state is not valid", "take another checkpoint");
   return state;
 }

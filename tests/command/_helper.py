@@ -80,13 +80,17 @@ def write(path, text):
         file.write(text)
 
 
-def edited(*changes):
-    """The deck above with pieces of its text replaced."""
-    text = DECK
+def replaced(text, *changes):
+    """A text with pieces of it replaced, each where it stands first."""
     for old, new in changes:
         assert old in text, old
         text = text.replace(old, new, 1)
     return text
+
+
+def edited(*changes):
+    """The deck above with pieces of its text replaced."""
+    return replaced(DECK, *changes)
 
 
 def fresh(*paths):

@@ -1,4 +1,4 @@
-"""The state digest of two example decks after 2,000 steps, over every way to run them.
+"""The state digest of two example decks after 1,200 steps, over every way to run them.
 
 usage: digest_matrix.py BARCHAN [--full] [--list]
 
@@ -23,10 +23,10 @@ from work_folder import SOURCE, leave_tree  # noqa: E402
 RANKS = (1, 2, 3, 4)
 THREADS = (1, 2)
 SCHEDULES = ("overlap", "sequential")
-STEPS, ALL_PAIRS_STEPS = 2000, 40
+STEPS, ALL_PAIRS_STEPS = 1200, 40
 SKINS = (0.02, 0.05)  # of lists; nobody's bit
 
-# The plate comes down after a tenth of a second, so that the bonds are loaded within the 2,000 steps.
+# The plate comes down after a tenth of a second, so that the bonds are loaded within the 1,200 steps.
 DECKS = {
     "soil_duct": ["--set", "stage.settle.max_time=0.1", "--set", "wall.plate.point=[8.0, 3.05]"],
     "column_collapse": [],

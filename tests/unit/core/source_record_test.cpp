@@ -37,6 +37,22 @@ TEST(SourceRecord, IsTheSameForTheSameParticles) {
   EXPECT_EQ(difference_of({{"\"pipe\"", "\"tube\""}, {"\"pipe\"", "\"tube\""}}), "");
 }
 
+TEST(SourceRecord, TakesLengthsAndForcesOfAFilesBondsIn) {
+  Deck deck = parse_deck(edited(good_deck(), {{"count = 1000", "count = 100"}}), "deck.toml");
+  for (ParticleSource& source : deck.sources) source.record.keys.push_back({"path", "beam.vtp"});
+  std::vector<std::size_t> begins;
+  const ParticleSet made = make_particles(deck.model, deck.sources, begins);
+  ASSERT_FALSE(made.bonds.empty());
+  const auto of = [&](const ParticleSet& set) { return make_records(deck.sources, set, begins); };
+  ParticleSet longer = made, bent = made;
+  longer.bonds[0].length += 1e-3;
+  bent.bonds[0].bending[2] = 1.0;
+
+  EXPECT_EQ(source_differences(of(made), of(made)), "");
+  EXPECT_NE(source_differences(of(made), of(longer)), "");
+  EXPECT_NE(source_differences(of(made), of(bent)), "");
+}
+
 TEST(SourceRecord, NamesTheKeysThatDiffer) {
   EXPECT_EQ(difference_of({{"count = 100", "count = 99"}}),
             "[[particles]] 1 (packing, line 30): count was 100 and is 99");
