@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <map>
-#include <numbers>
 
 #include <fmt/format.h>
 
@@ -12,6 +11,7 @@
 #include <barchan/app/warning.hpp>
 #include <barchan/core/force_grain.hpp>
 #include <barchan/core/generators/check_walls.hpp>
+#include <barchan/core/mass.hpp>
 #include <barchan/tasks/forecast.hpp>
 #include <barchan/tasks/memory_estimate.hpp>
 #include <barchan/tasks/stability.hpp>
@@ -21,11 +21,6 @@ namespace barchan::app {
 namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
-
-double mass_of(const ParticleData& p, int dimension) {
-  const double r = p.radius;
-  return std::numbers::pi * p.density * (dimension == 2 ? r * r : 4.0 / 3.0 * r * r * r);
-}
 
 std::string kind_of(const ParticleSource& source) {
   static constexpr const char* kNames[] = {"file", "lattice", "packing", "ring", "list"};

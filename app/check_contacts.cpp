@@ -4,22 +4,17 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include <barchan/app/readable.hpp>
+#include <barchan/core/mass.hpp>
 #include <barchan/core/restitution.hpp>
 
 namespace barchan::app {
 namespace {
-
-double mass_of(const ParticleData& p, int dimension) {
-  const double r = p.radius;
-  return std::numbers::pi * p.density * (dimension == 2 ? r * r : 4.0 / 3.0 * r * r * r);
-}
 
 constexpr double kUnused = std::numeric_limits<double>::infinity();
 

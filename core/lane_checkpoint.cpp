@@ -4,6 +4,7 @@
 #include <barchan/core/checkpoint/share.hpp>
 #include <barchan/core/error.hpp>
 #include <barchan/core/lane.hpp>
+#include <barchan/core/row_record.hpp>
 
 // Saving a lane and bringing it back. What lies across a cut is saved on its right: the left band's
 // pairs and bonds.
@@ -13,25 +14,34 @@ namespace {
 
 template <int Dim>
 void save_particles(const ParticleStore<Dim>& store, CheckpointShare& share) {
-  using L = Layout<Dim>;
-  const auto n = static_cast<std::size_t>(store.num_owned);
-  share.ids.assign(store.id.begin(), store.id.begin() + store.num_owned);
-  share.types.assign(store.type.begin(), store.type.begin() + store.num_owned);
-  share.flags.assign(store.flags.begin(), store.flags.begin() + store.num_owned);
-  share.externals.assign(store.external.begin(), store.external.end());
-  share.positions.resize(n * Dim);
-  share.velocities.resize(n * Dim);
-  share.surface_speeds.resize(n * kSpins<Dim>);
-  share.radii.resize(n);
-  share.inverse_masses.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto row = static_cast<std::int32_t>(i);
-    std::copy_n(store.x(row), Dim, share.positions.data() + i * Dim);
-    std::copy_n(store.x(row) + L::kVelocity, Dim, share.velocities.data() + i * Dim);
-    std::copy_n(store.u(row), int{kSpins<Dim>}, share.surface_speeds.data() + i * kSpins<Dim>);
-    share.radii[i] = store.radius(row);
-    share.inverse_masses[i] = store.inverse_mass(row);
-  }
+  const std::int32_t n = store.num_owned;
+  for_each_field<Dim>([&]<class T>(const Field<Dim, T>& field) {
+    if (field.array.is_optional && (store.*field.array.values).empty()) return;
+    std::vector<T>& column = share.*field.saved;
+    const auto width = static_cast<std::size_t>(field.width);
+    column.resize(static_cast<std::size_t>(n) * width);
+    for (std::int32_t row = 0; row < n; ++row)
+      std::copy_n(field.of(store, row), width,
+                  column.data() + static_cast<std::size_t>(row) * width);
+  });
+}
+
+/// @pre room for the rows, zeros in them
+template <int Dim>
+void restore_particles(const CheckpointShare& share, ParticleStore<Dim>& store) {
+  const std::int32_t n = store.num_owned;
+  for_each_field<Dim>([&]<class T>(const Field<Dim, T>& field) {
+    const std::vector<T>& column = share.*field.saved;
+    auto& values = store.*field.array.values;
+    if (field.array.is_optional) {
+      if (column.empty()) return;
+      values.assign(static_cast<std::size_t>(n) * static_cast<std::size_t>(field.array.width), T{});
+    }
+    const auto width = static_cast<std::size_t>(field.width);
+    for (std::int32_t row = 0; row < n; ++row)
+      std::copy_n(column.data() + static_cast<std::size_t>(row) * width, width,
+                  field.of(store, row));
+  });
 }
 
 /// Of squared distances and of distances: what touches, and a little more for rounding.
@@ -109,27 +119,17 @@ void Lane<Dim>::restore(int slab_begin, int slab_end, const CheckpointShare& sha
   store_.resize_for_ghosts(world_->grain.rounder());
   goes_.assign(share.ids.size(), 0);
   std::unordered_map<std::int64_t, std::int32_t> row_of;
+  for (std::int32_t i = 0; i < n; ++i) RowRecord<Dim>().put(store_, i);
+  restore_particles(share, store_);
   for (std::int32_t i = 0; i < n; ++i) {
     const auto at = static_cast<std::size_t>(i);
-    double* x = store_.x(i);
-    std::fill_n(x, 8, 0.0);
-    std::copy_n(share.positions.data() + at * Dim, Dim, x);
-    std::copy_n(share.velocities.data() + at * Dim, Dim, store_.v(i));
-    x[L::kRadius] = share.radii[at];
-    x[L::kInverseMass] = share.inverse_masses[at];
-    if constexpr (Dim == 3) std::fill_n(store_.u(i), 4, 0.0);
-    std::copy_n(share.surface_speeds.data() + at * kSpins<Dim>, int{kSpins<Dim>}, store_.u(i));
-    store_.id[at] = share.ids[at];
-    store_.key[at] = world_->grid.key(x);
-    store_.type[at] = share.types[at];
-    store_.flags[at] = share.flags[at];
-    if (!row_of.emplace(share.ids[at], i).second) {
-      throw RunError("the checkpoint has particle " + std::to_string(share.ids[at]) +
+    store_.key[at] = world_->grid.key(store_.x(i));
+    if (!row_of.emplace(store_.id[at], i).second) {
+      throw RunError("the checkpoint has particle " + std::to_string(store_.id[at]) +
                      " twice: take another one");
     }
   }
   for (const double outrun : share.outruns) outrun_ = std::max(outrun_, outrun);
-  store_.external.assign(share.externals.begin(), share.externals.end());
   queue_links(share, row_of);
 }
 

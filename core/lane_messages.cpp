@@ -18,13 +18,26 @@ bool is_below(std::int64_t number, std::size_t end) {
   return number >= 0 && static_cast<std::size_t>(number) < end;
 }
 
+template <int Dim>
+std::int64_t id_of(const RowRecord<Dim>& p) {
+  return *p.template values<&ParticleStore<Dim>::id>();
+}
+
+template <int Dim>
+std::int64_t key_of(const RowRecord<Dim>& p) {
+  return *p.template values<&ParticleStore<Dim>::key>();
+}
+
 /// Whether a particle is of this world, and in the cell that it claims.
 template <int Dim>
-void check(const ParticleRecord<Dim>& p, const World<Dim>& world) {
-  constexpr int kAllFlags = ParticleStore<Dim>::kFixed | ParticleStore<Dim>::kBonded;
-  const bool is_right = p.id > 0 && p.type < world.laws.num_materials() && p.flags <= kAllFlags &&
-                        p.has_external <= 1 && p.key == world.grid.key(p.motion);
-  if (!is_right) refuse("particle " + std::to_string(p.id) + " does not belong to this run");
+void check(const RowRecord<Dim>& p, const World<Dim>& world) {
+  using Store = ParticleStore<Dim>;
+  constexpr int kAllFlags = Store::kFixed | Store::kBonded;
+  const bool is_right = id_of(p) > 0 && p.is_valid() &&
+                        *p.template values<&Store::type>() < world.laws.num_materials() &&
+                        *p.template values<&Store::flags>() <= kAllFlags &&
+                        key_of(p) == world.grid.key(p.template values<&Store::motion>());
+  if (!is_right) refuse("particle " + std::to_string(id_of(p)) + " does not belong to this run");
 }
 
 template <int Dim>
@@ -65,16 +78,16 @@ Migration<Dim> decode_migration(std::span<const std::byte> message, const World<
                                 int slab_begin, int slab_end) {
   Migration<Dim> m;
   ByteReader in(message);
-  m.particles = in.take_counted<ParticleRecord<Dim>>();
+  m.particles = in.take_counted<RowRecord<Dim>>();
   m.contacts = in.take_counted<LooseContact<Dim>>();
   m.walls = in.take_counted<WallRecord<Dim>>();
   m.bonds = in.take_counted<BondRecord<Dim>>();
   in.finish();
   for (const auto& p : m.particles) {
     check(p, world);
-    const std::int64_t slab = p.key / world.grid.slab_size();
+    const std::int64_t slab = key_of(p) / world.grid.slab_size();
     if (slab >= slab_begin && slab < slab_end) continue;
-    throw RunError("particle " + std::to_string(p.id) +
+    throw RunError("particle " + std::to_string(id_of(p)) +
                    " jumped over a whole strip: the time step is too long");
   }
   check_links(m, world);
@@ -82,15 +95,15 @@ Migration<Dim> decode_migration(std::span<const std::byte> message, const World<
 }
 
 template <int Dim>
-std::vector<ParticleRecord<Dim>> decode_ghosts(std::span<const std::byte> message,
-                                               const World<Dim>& world, int slab) {
+std::vector<RowRecord<Dim>> decode_ghosts(std::span<const std::byte> message,
+                                          const World<Dim>& world, int slab) {
   ByteReader in(message);
-  auto ghosts = in.take_counted<ParticleRecord<Dim>>();
+  auto ghosts = in.take_counted<RowRecord<Dim>>();
   in.finish();
   for (std::size_t g = 0; g < ghosts.size(); ++g) {
     check(ghosts[g], world);
-    const bool is_next = g == 0 || ghosts[g - 1].key <= ghosts[g].key;
-    if (!is_next || ghosts[g].key / world.grid.slab_size() != slab)
+    const bool is_next = g == 0 || key_of(ghosts[g - 1]) <= key_of(ghosts[g]);
+    if (!is_next || key_of(ghosts[g]) / world.grid.slab_size() != slab)
       refuse("ghosts out of order or of another slab");
   }
   return ghosts;
@@ -100,9 +113,7 @@ template void encode(const Migration<2>&, std::vector<std::byte>&);
 template void encode(const Migration<3>&, std::vector<std::byte>&);
 template Migration<2> decode_migration(std::span<const std::byte>, const World<2>&, int, int);
 template Migration<3> decode_migration(std::span<const std::byte>, const World<3>&, int, int);
-template std::vector<ParticleRecord<2>> decode_ghosts(std::span<const std::byte>, const World<2>&,
-                                                      int);
-template std::vector<ParticleRecord<3>> decode_ghosts(std::span<const std::byte>, const World<3>&,
-                                                      int);
+template std::vector<RowRecord<2>> decode_ghosts(std::span<const std::byte>, const World<2>&, int);
+template std::vector<RowRecord<3>> decode_ghosts(std::span<const std::byte>, const World<3>&, int);
 
 }  // namespace barchan

@@ -7,6 +7,7 @@
 
 #include <barchan/core/bonds.hpp>
 #include <barchan/core/layout.hpp>
+#include <barchan/core/row_record.hpp>
 #include <barchan/core/wall_shape.hpp>
 
 // What lanes send each other at a rebuild, as bytes and back. Bytes that came in are held against
@@ -16,16 +17,6 @@ namespace barchan {
 
 template <int Dim>
 struct World;
-
-/// A particle on its way: an arrival, or a ghost.
-template <int Dim>
-struct ParticleRecord {
-  std::int64_t id, key;
-  double motion[8];
-  double spin[Dim == 3 ? 4 : 1];
-  double external[Layout<Dim>::kForce];
-  std::uint8_t type, flags, has_external;
-};
 
 /// A contact's spring on its way from old lists to new ones; oriented from the handle to the
 /// partner.
@@ -53,7 +44,7 @@ struct BondRecord {
 /// its place in `particles`.
 template <int Dim>
 struct Migration {
-  std::vector<ParticleRecord<Dim>> particles;
+  std::vector<RowRecord<Dim>> particles;
   std::vector<LooseContact<Dim>> contacts;
   std::vector<WallRecord<Dim>> walls;
   std::vector<BondRecord<Dim>> bonds;
@@ -72,7 +63,7 @@ template <int Dim>
 
 /// Ghosts of one slab, by cells. Errors: RunError.
 template <int Dim>
-[[nodiscard]] std::vector<ParticleRecord<Dim>> decode_ghosts(std::span<const std::byte> message,
-                                                             const World<Dim>& world, int slab);
+[[nodiscard]] std::vector<RowRecord<Dim>> decode_ghosts(std::span<const std::byte> message,
+                                                        const World<Dim>& world, int slab);
 
 }  // namespace barchan

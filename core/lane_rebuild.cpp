@@ -9,38 +9,6 @@
 // Ownership and order: who leaves, who arrives, rows by cells, ghosts.
 
 namespace barchan {
-namespace {
-
-template <int Dim>
-ParticleRecord<Dim> record_of(const ParticleStore<Dim>& s, std::int32_t row) {
-  ParticleRecord<Dim> r{};
-  const auto at = static_cast<std::size_t>(row);
-  r.id = s.id[at];
-  r.key = s.key[at];
-  std::copy_n(s.x(row), 8, r.motion);
-  if constexpr (Dim == 3) std::copy_n(s.u(row), 4, r.spin);
-  r.type = s.type[at];
-  r.flags = s.flags[at];
-  if (!s.external.empty() && s.is_owned(row)) {
-    r.has_external = 1;
-    std::copy_n(s.external.data() + at * Layout<Dim>::kForce, int{Layout<Dim>::kForce}, r.external);
-  }
-  return r;
-}
-
-template <int Dim>
-void write_row(ParticleStore<Dim>& s, std::int32_t row, const ParticleRecord<Dim>& r) {
-  const auto at = static_cast<std::size_t>(row);
-  s.id[at] = r.id;
-  s.key[at] = r.key;
-  std::copy_n(r.motion, 8, s.x(row));
-  if constexpr (Dim == 3) std::copy_n(r.spin, 4, s.u(row));
-  s.type[at] = r.type;
-  s.flags[at] = r.flags;
-}
-
-}  // namespace
-
 template <int Dim>
 int Lane<Dim>::direction_of(std::int64_t key, std::int64_t key_before) const {
   const std::int64_t slab_size = world_->grid.slab_size();
@@ -93,7 +61,7 @@ void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byt
     if (goes_[at] == 0 || goes_[at] == kGone) continue;
     auto& leavers = out[static_cast<std::size_t>(goes_[at] - 1)].particles;
     number[at] = static_cast<std::int32_t>(leavers.size());
-    leavers.push_back(record_of(store_, i));
+    leavers.emplace_back().take(store_, i);
   }
 
   loose_.clear();
@@ -135,22 +103,10 @@ void Lane<Dim>::absorb(std::span<const std::byte> message) {
   // Arrivals follow the source rows of begin_rebuild; ghosts and waste rows are no longer needed.
   const auto first = static_cast<std::int32_t>(goes_.size());
   const std::int32_t end = first + static_cast<std::int32_t>(particles.size());
-  const auto rows = static_cast<std::size_t>(std::max(end + 2, store_.size()));
-  resize_with_room(store_.motion, rows * L::kMotion);
-  resize_with_room(store_.spin, rows * L::kSpin);
-  resize_with_room(store_.id, rows);
-  resize_with_room(store_.key, rows);
-  resize_with_room(store_.type, rows);
-  resize_with_room(store_.flags, rows);
+  store_.resize_rows(static_cast<std::size_t>(std::max(end + 2, store_.size())));
   goes_.resize(static_cast<std::size_t>(end), 0);
-  for (std::size_t p = 0; p < particles.size(); ++p) {
-    const auto row = first + static_cast<std::int32_t>(p);
-    write_row(store_, row, particles[p]);
-    if (particles[p].has_external == 0) continue;
-    store_.external.resize(goes_.size() * L::kForce, 0.0);
-    std::copy_n(particles[p].external, int{L::kForce},
-                store_.external.data() + static_cast<std::size_t>(row) * L::kForce);
-  }
+  for (std::size_t p = 0; p < particles.size(); ++p)
+    particles[p].put(store_, first + static_cast<std::int32_t>(p));
   for (LooseContact<Dim>& c : contacts) {
     c.handle += first;
     loose_.push_back(c);
@@ -213,8 +169,12 @@ void Lane<Dim>::pack_ghosts(Side side, std::vector<std::byte>& message) const {
   const std::int32_t begin = side == Left ? 0 : cells_.first_row(slab_end_ - 1, slab_size);
   const std::int32_t end =
       side == Left ? cells_.first_row(slab_begin_ + 1, slab_size) : store_.num_owned;
-  std::vector<ParticleRecord<Dim>> records;
-  for (std::int32_t i = begin; i < end; ++i) records.push_back(record_of(store_, i));
+  std::vector<RowRecord<Dim>> records(static_cast<std::size_t>(end - begin));
+  for (std::int32_t i = begin; i < end; ++i) {
+    RowRecord<Dim>& record = records[static_cast<std::size_t>(i - begin)];
+    record.take(store_, i);
+    record.forget_optional();
+  }
   message.clear();
   ByteWriter(message).put_counted(records);
 }
@@ -223,7 +183,7 @@ template <int Dim>
 void Lane<Dim>::take_ghosts(std::span<const std::byte> left, std::span<const std::byte> right) {
   const int num_slabs = world_->grid.num_slabs();
   const std::array<int, 2> slabs{(slab_begin_ - 1 + num_slabs) % num_slabs, slab_end_ % num_slabs};
-  std::array<std::vector<ParticleRecord<Dim>>, 2> ghosts;
+  std::array<std::vector<RowRecord<Dim>>, 2> ghosts;
   for (const Side side : {Left, Right}) {
     if (!bands_[side].exists) continue;
     ghosts[side] = decode_ghosts(side == Left ? left : right, *world_, slabs[side]);
@@ -234,7 +194,7 @@ void Lane<Dim>::take_ghosts(std::span<const std::byte> left, std::span<const std
     if (!bands_[side].exists) continue;
     std::int32_t row = store_.ghost_begin(side);
     const std::int32_t begin = row;
-    for (const auto& record : ghosts[side]) write_row(store_, row++, record);
+    for (const RowRecord<Dim>& record : ghosts[side]) record.put(store_, row++);
     bands_[side].ghost_cells.index(world_->grid, store_, {begin, row}, slabs[side],
                                    slabs[side] + 1);
     const Stopwatch watch(search_seconds_.rebuild);

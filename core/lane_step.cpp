@@ -4,6 +4,7 @@
 #include <string>
 
 #include <barchan/core/error.hpp>
+#include <barchan/core/fields.hpp>
 #include <barchan/core/lane.hpp>
 #include <barchan/core/simd/denormals.hpp>
 
@@ -139,20 +140,19 @@ template <int Dim>
 void Lane<Dim>::unpack_halo(Side side, std::span<const std::byte> message) {
   const std::int32_t begin = store_.ghost_begin(side),
                      n = store_.num_ghosts[static_cast<std::size_t>(side)];
-  if (message.size() != static_cast<std::size_t>(n) * L::kHalo * sizeof(double)) {
+  if (message.size() != static_cast<std::size_t>(n) * halo_record_bytes<Dim>()) {
     throw RunError("a halo message has " + std::to_string(message.size()) + " bytes for " +
                    std::to_string(n) + " ghosts");
   }
   const std::byte* from = message.data();
-  const auto take = [&from](double* to, int count) {
-    std::memcpy(to, from, static_cast<std::size_t>(count) * sizeof(double));
-    from += static_cast<std::size_t>(count) * sizeof(double);
-  };
   double top2 = 0.0;
   for (std::int32_t g = begin; g < begin + n; ++g) {
-    take(store_.x(g), Dim);
-    take(store_.v(g), Dim);
-    take(store_.u(g), kSpins<Dim>);
+    for_each_field<Dim>([&]<class T>(const Field<Dim, T>& field) {
+      if (!field.is_in_halo) return;
+      const std::size_t bytes = static_cast<std::size_t>(field.width) * sizeof(T);
+      std::memcpy(field.of(store_, g), from, bytes);
+      from += bytes;
+    });
     const double* v = store_.v(g);
     top2 = std::max(top2, v[0] * v[0] + v[1] * v[1] + (Dim == 3 ? v[2] * v[2] : 0.0));
   }
@@ -164,21 +164,20 @@ void Lane<Dim>::unpack_halo(Side side, std::span<const std::byte> message) {
 template <int Dim>
 std::size_t Lane<Dim>::halo_bytes(Side side) const {
   const Rows rows = bands_[side].rows;
-  return static_cast<std::size_t>(rows.end - rows.begin) * L::kHalo * sizeof(double);
+  return static_cast<std::size_t>(rows.end - rows.begin) * halo_record_bytes<Dim>();
 }
 
 template <int Dim>
 void Lane<Dim>::pack_halo(Side side, std::span<std::byte> message) const {
   std::byte* to = message.data();
-  const auto put = [&to](const double* from, int count) {
-    std::memcpy(to, from, static_cast<std::size_t>(count) * sizeof(double));
-    to += static_cast<std::size_t>(count) * sizeof(double);
-  };
   const Rows rows = bands_[side].rows;
   for (std::int32_t i = rows.begin; i < rows.end; ++i) {
-    put(store_.x(i), Dim);
-    put(store_.v(i), Dim);
-    put(store_.u(i), kSpins<Dim>);
+    for_each_field<Dim>([&]<class T>(const Field<Dim, T>& field) {
+      if (!field.is_in_halo) return;
+      const std::size_t bytes = static_cast<std::size_t>(field.width) * sizeof(T);
+      std::memcpy(to, field.of(store_, i), bytes);
+      to += bytes;
+    });
   }
 }
 

@@ -27,13 +27,13 @@ void take_worst_pair(const ParticleStore<Dim>& store, const PeriodicBox& box, co
     const double d2 = distance2<Dim>(box, store.x(i), store.x(j));
     if (d2 >= known * known && known > 0.0) continue;
     const double overlap = reach - std::sqrt(d2);
-    WorstOverlap here{overlap / least,
-                      overlap,
-                      store.id[static_cast<std::size_t>(i)],
-                      store.id[static_cast<std::size_t>(j)],
-                      -1,
-                      {}};
-    std::copy_n(store.x(i), Dim, here.position);
+    // The lower id first: which row is i depends on cells and cuts.
+    const auto id_of = [&store](std::int32_t row) {
+      return store.id[static_cast<std::size_t>(row)];
+    };
+    const auto [first, second] = id_of(i) < id_of(j) ? std::pair(i, j) : std::pair(j, i);
+    WorstOverlap here{overlap / least, overlap, id_of(first), id_of(second), -1, {}};
+    std::copy_n(store.x(first), Dim, here.position);
     if (overlap > 0.0 && here.is_worse_than(worst)) worst = here;
   }
 }

@@ -9,14 +9,14 @@ namespace barchan {
 
 /// Particles live in aligned records, so that a batch of pairs is aligned loads and a transpose:
 ///
-///   2D  motion | x  y  r  –  | vx vy u  1/m |
+///   2D  motion | x  y  r rho | vx vy u  1/m |
 ///       force  | fx fy ft S  |
 ///
 ///   3D  motion | x  y  z  r  | vx vy vz 1/m |
-///       spin   | ux uy uz –  |
+///       spin   | ux uy uz rho|
 ///       force  | fx fy fz S  | tx ty tz –   |
 ///
-/// u = r·omega is the surface speed [m/s]; ft, (tx ty tz) are torque / r [N]; S is the sum of the
+/// rho is the density; u = r·omega is the surface speed [m/s]; ft, (tx ty tz) are torque / r [N]; S is the sum of the
 /// sizes of contact forces. A fixed particle has 1/m = 0.
 template <int Dim>
 struct Layout;
@@ -28,7 +28,7 @@ struct Layout<2> {
       0;  ///< doubles per spin record: the surface speed is in the motion record
   static constexpr int kForce = 4, kTorque = 2;
   static constexpr int kSprings = 1;        ///< tangential spring components per contact
-  static constexpr int kHalo = 5;           ///< doubles per halo record: x y vx vy u
+  static constexpr int kDensity = 3;        ///< beside the surface speed
   static constexpr double kSpinGain = 2.0;  ///< m r² / I of a disk
 };
 
@@ -38,7 +38,7 @@ struct Layout<3> {
   static constexpr int kSpin = 4;
   static constexpr int kForce = 8, kTorque = 4;
   static constexpr int kSprings = 3;
-  static constexpr int kHalo = 9;           ///< x y z vx vy vz ux uy uz
+  static constexpr int kDensity = 3;
   static constexpr double kSpinGain = 2.5;  ///< m r² / I of a sphere
 };
 

@@ -2,28 +2,29 @@
 
 #include <algorithm>
 
+#include <barchan/core/row_record.hpp>
+
 namespace barchan {
+
+template <int Dim>
+void ParticleStore<Dim>::resize_rows(std::size_t n) {
+  for_each_array<Dim>([&](const auto& array) {
+    if (!array.is_optional)
+      resize_with_room(this->*array.values, n * static_cast<std::size_t>(array.width));
+  });
+}
 
 template <int Dim>
 void ParticleStore<Dim>::resize_for_ghosts(double rounder) {
   const auto n = static_cast<std::size_t>(size());
-  resize_with_room(motion, n * L::kMotion);
-  resize_with_room(spin, n * L::kSpin);
+  resize_rows(n);
   resize_with_room(force, n * L::kForce);
   start_forces(rounder, 0, size());
-  resize_with_room(id, n);
-  resize_with_room(key, n);
-  resize_with_room(type, n);
-  resize_with_room(flags, n);
   for (std::int32_t w = waste(); w < waste() + 2; ++w) {
-    std::fill_n(x(w), int{L::kMotion}, 0.0);
-    std::fill_n(u(w), Dim == 2 ? 1 : 4, 0.0);
+    RowRecord<Dim>().put(*this, w);
     x(w)[0] = -1e9 * (1 + w - waste());
     x(w)[L::kInverseMass] = 1.0;
-    const auto at = static_cast<std::size_t>(w);
-    id[at] = -1;
-    key[at] = -1;
-    type[at] = flags[at] = 0;
+    id[static_cast<std::size_t>(w)] = key[static_cast<std::size_t>(w)] = -1;
   }
 }
 
@@ -47,9 +48,12 @@ void ParticleStore<Dim>::start_extra(std::int32_t begin, std::int32_t end) {
 
 template <int Dim>
 std::size_t ParticleStore<Dim>::bytes() const {
-  return 8 * (motion.capacity() + spin.capacity() + force.capacity() + reference.capacity() +
-              id.capacity() + key.capacity() + external.capacity() + extra.capacity()) +
-         type.capacity() + flags.capacity();
+  std::size_t bytes = (force.capacity() + reference.capacity() + extra.capacity()) * sizeof(double);
+  for_each_array<Dim>([&](const auto& array) {
+    const auto& values = this->*array.values;
+    bytes += values.capacity() * sizeof(values[0]);
+  });
+  return bytes;
 }
 
 template struct ParticleStore<2>;

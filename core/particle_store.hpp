@@ -8,7 +8,7 @@
 
 namespace barchan {
 
-/// Particles of one lane, by cells, then two rows that belong to nobody, then ghosts:
+/// Particles of one lane (fields.hpp says what they have), by cells, then two rows that belong to nobody, then ghosts:
 ///
 ///   | owned 0 … n−1 | waste n, n+1 | left ghosts | right ghosts |
 ///
@@ -63,7 +63,14 @@ struct ParticleStore {
   }
   [[nodiscard]] double radius(std::int32_t i) const { return x(i)[L::kRadius]; }
   [[nodiscard]] double inverse_mass(std::int32_t i) const { return x(i)[L::kInverseMass]; }
+  /// [kg/m³], 2D [kg/m²]
+  [[nodiscard]] double& density(std::int32_t i) { return (Dim == 2 ? x(i) : u(i))[L::kDensity]; }
+  [[nodiscard]] double density(std::int32_t i) const {
+    return (Dim == 2 ? x(i) : u(i))[L::kDensity];
+  }
 
+  /// Makes room for so many rows of all that moves with a row, but for optional arrays.
+  void resize_rows(std::size_t n);
   /// Makes room for all rows, waste rows set. @param rounder  what sums of forces start from
   void resize_for_ghosts(double rounder = 0.0);
   /// Forces of rows [begin, end) start from the rounder.

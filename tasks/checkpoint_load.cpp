@@ -9,6 +9,7 @@
 #include <barchan/core/bonds.hpp>
 #include <barchan/core/error.hpp>
 #include <barchan/core/exact_sum.hpp>
+#include <barchan/core/fields.hpp>
 #include <barchan/core/layout.hpp>
 #include <barchan/core/simd/scalar.hpp>
 #include <barchan/core/wall_shape.hpp>
@@ -31,15 +32,10 @@ void take(const std::vector<T>& from, std::size_t number, std::size_t width, std
 
 template <int Dim>
 void take_particle(const CheckpointShare& from, std::size_t p, CheckpointShare& to) {
-  take(from.ids, p, 1, to.ids);
-  take(from.positions, p, Dim, to.positions);
-  take(from.velocities, p, Dim, to.velocities);
-  take(from.surface_speeds, p, kSpins<Dim>, to.surface_speeds);
-  take(from.radii, p, 1, to.radii);
-  take(from.inverse_masses, p, 1, to.inverse_masses);
-  take(from.types, p, 1, to.types);
-  take(from.flags, p, 1, to.flags);
-  if (!from.externals.empty()) take(from.externals, p, Layout<Dim>::kForce, to.externals);
+  for_each_field<Dim>([&](const auto& field) {
+    const auto& values = from.*field.saved;
+    if (!values.empty()) take(values, p, static_cast<std::size_t>(field.width), to.*field.saved);
+  });
 }
 
 using Ids = std::unordered_set<std::int64_t>;

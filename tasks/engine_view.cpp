@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include <barchan/core/row_particle.hpp>
 #include <barchan/tasks/engine.hpp>
 
 // What callers see of a simulation between steps.
@@ -11,18 +12,8 @@ namespace barchan {
 template <int Dim>
 OwnedParticle Simulation::EngineOf<Dim>::particle(const ParticleStore<Dim>& store,
                                                   std::int32_t i) const {
-  const auto at = static_cast<std::size_t>(i);
   const double im = store.inverse_mass(i);
-  OwnedParticle p{store.id[at],    store.type[at],
-                  store.radius(i), im > 0.0 ? 1.0 / im : std::numeric_limits<double>::infinity(),
-                  Vec3::Zero(),    Vec3::Zero(),
-                  Vec3::Zero()};
-  for (int c = 0; c < Dim; ++c) {
-    p.position[c] = store.x(i)[c];
-    p.velocity[c] = store.v(i)[c];
-  }
-  for (int c = 0; c < kSpins<Dim>; ++c) p.omega[Dim == 2 ? 2 : c] = store.u(i)[c] / p.radius;
-  return p;
+  return {particle_at(store, i), im > 0.0 ? 1.0 / im : std::numeric_limits<double>::infinity()};
 }
 
 template <int Dim>

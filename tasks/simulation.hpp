@@ -21,11 +21,8 @@ namespace barchan {
 
 /// One owned particle as callers see it. Positions are those of time(), velocities half a step
 /// earlier (leapfrog).
-struct OwnedParticle {
-  std::int64_t id;
-  std::int32_t type;    ///< material index
-  double radius, mass;  ///< mass of a fixed particle: infinite
-  Vec3 position, velocity, omega;
+struct OwnedParticle : ParticleData {
+  double mass = 0.0;  ///< [kg]; of a fixed particle infinite
 };
 
 using BondVisitor = std::function<void(const BondData&, const Vec3& a, const Vec3& b)>;

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -14,6 +13,7 @@
 #include <barchan/core/bonds.hpp>
 #include <barchan/core/error.hpp>
 #include <barchan/core/layout.hpp>
+#include <barchan/core/mass.hpp>
 
 namespace barchan {
 namespace {
@@ -29,10 +29,8 @@ double coefficient(const Dashpot& dashpot, double m_eff) {
   return dashpot.constant + dashpot.rate * m_eff + dashpot.critical * std::sqrt(m_eff);
 }
 
-double mass_of(const ParticleData& p, int dimension) {
-  const double r = p.radius;
-  const double body = dimension == 2 ? r * r : 4.0 / 3.0 * r * r * r;
-  return p.fixed ? kInfinite : std::numbers::pi * body * p.density;
+double mass_in_motion(const ParticleData& p, int dimension) {
+  return p.fixed ? kInfinite : mass_of(p, dimension);
 }
 
 double spin_gain(int dimension) {
@@ -74,7 +72,7 @@ struct Lightest {
 std::vector<Lightest> lightest_of(const Model& model, const ParticleSet& set) {
   std::vector<Lightest> lightest(model.materials.size());
   for (const ParticleData& p : set.particles) {
-    lightest[static_cast<std::size_t>(p.type)].take(1.0 / mass_of(p, model.dimension));
+    lightest[static_cast<std::size_t>(p.type)].take(1.0 / mass_in_motion(p, model.dimension));
   }
   return lightest;
 }
@@ -149,13 +147,14 @@ void add_bond(const Model& model, const BondData& bond, const ParticleData& a,
   const BondLaw& law = model.bond_laws[static_cast<std::size_t>(bond.law)];
   const Vec3 d = between(model.domain, a.position, b.position);
   const double length = d.norm();
-  const double inverse = 1.0 / mass_of(a, model.dimension) + 1.0 / mass_of(b, model.dimension);
+  const double inverse =
+      1.0 / mass_in_motion(a, model.dimension) + 1.0 / mass_in_motion(b, model.dimension);
   if (!(length > 0.0) || !(inverse > 0.0)) return;
   const double unstressed = bond.length > 0.0 ? bond.length : length;
   const BondSection s = section_of(model, law, unstressed, a.radius, b.radius);
   const double gain = spin_gain(model.dimension);
-  const double turning = gain * (1.0 / (mass_of(a, model.dimension) * a.radius * a.radius) +
-                                 1.0 / (mass_of(b, model.dimension) * b.radius * b.radius));
+  const double turning = gain * (1.0 / (mass_in_motion(a, model.dimension) * a.radius * a.radius) +
+                                 1.0 / (mass_in_motion(b, model.dimension) * b.radius * b.radius));
   const double shear = (1.0 + gain) * inverse;
   const double bending = std::max(s.bending, model.dimension == 3 ? s.twisting : 0.0);
   const auto dashpot = [&](double k, double inverse_m) {

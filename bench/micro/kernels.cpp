@@ -1,5 +1,6 @@
 #include <string>
 
+#include <barchan/core/fields.hpp>
 #include <barchan/core/simd/denormals.hpp>
 
 #include "law_cost.hpp"
@@ -146,7 +147,7 @@ void pack_halo(benchmark::State& state) {
     sample->lane->pack_halo(Lane<Dim>::Right, message);
     benchmark::ClobberMemory();
   }
-  const double record = 8.0 * Layout<Dim>::kHalo, bytes = record_bytes(Dim) + record;
+  const double record = double{halo_record_bytes<Dim>()}, bytes = record_bytes(Dim) + record;
   report(state, static_cast<double>(message.size()) / record, {bytes, 2.0 * record, 0.0});
 }
 
@@ -159,7 +160,7 @@ void unpack_halo(benchmark::State& state) {
     sample->lane->unpack_halo(Lane<Dim>::Right, message);
     benchmark::ClobberMemory();
   }
-  const double record = 8.0 * Layout<Dim>::kHalo, bytes = 2.0 * record_bytes(Dim) + record;
+  const double record = double{halo_record_bytes<Dim>()}, bytes = 2.0 * record_bytes(Dim) + record;
   report(state, static_cast<double>(message.size()) / record, {bytes, 2.0 * record, 0.0});
 }
 

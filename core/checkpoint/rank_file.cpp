@@ -11,6 +11,7 @@
 #include <memory>
 #include <new>
 
+#include <barchan/core/checkpoint/columns.hpp>
 #include <barchan/core/checkpoint/durable.hpp>
 #include <barchan/core/exact_sum.hpp>
 
@@ -21,7 +22,7 @@ static_assert(std::endian::native == std::endian::little,
               "checkpoints are written as memory has them");
 
 constexpr std::array<char, 8> kMagic{'b', 'a', 'r', 'c', 'h', 'a', 'n', '\n'};
-constexpr std::uint32_t kVersion = 5;
+constexpr std::uint32_t kVersion = 6;
 constexpr std::size_t kAlign = 64;
 
 struct DiskHeader {

@@ -5,10 +5,10 @@
 #include <limits>
 
 #include <barchan/core/bonds.hpp>
+#include <barchan/core/checkpoint/columns.hpp>
 #include <barchan/core/error.hpp>
 #include <barchan/core/exact_sum.hpp>
 #include <barchan/core/layout.hpp>
-#include <barchan/core/simd/scalar.hpp>
 #include <barchan/core/wall_shape.hpp>
 
 namespace barchan {
@@ -16,12 +16,12 @@ namespace {
 
 /// Values per particle, contact or bond.
 struct Widths {
-  std::size_t space, spins, force, springs, bond_state;
+  std::size_t springs, bond_state;
 };
 
 template <int Dim>
 constexpr Widths widths() {
-  return {Dim, kSpins<Dim>, Layout<Dim>::kForce, Layout<Dim>::kSprings, Bond<Dim>::kState};
+  return {Layout<Dim>::kSprings, Bond<Dim>::kState};
 }
 
 class Check {
@@ -60,23 +60,31 @@ class Check {
   const std::string& file_;
 };
 
-void check_particles(const CheckpointShare& s, const Widths& w, const ShareLimits& limits,
-                     const Check& check) {
-  using C = CheckpointColumn;
+/// Of a field, by what a share calls it.
+template <class T>
+CheckpointColumn column_of(std::vector<T> CheckpointShare::*saved) {
+  std::uint32_t found = 0;
+  for_each_field<3>([&](const auto& field) {
+    if constexpr (std::is_same_v<std::decay_t<decltype(field.saved)>, decltype(saved)>)
+      if (field.saved == saved) found = field.column;
+  });
+  return static_cast<CheckpointColumn>(found);
+}
+
+template <int Dim>
+void check_particles(const CheckpointShare& s, const ShareLimits& limits, const Check& check) {
   const std::size_t n = s.ids.size();
   check.require(n < static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()) - 8,
                 "too many particles in one share");
-  check.size(C::Positions, s.positions.size(), n * w.space);
-  check.size(C::Velocities, s.velocities.size(), n * w.space);
-  check.size(C::SurfaceSpeeds, s.surface_speeds.size(), n * w.spins);
-  check.size(C::Radii, s.radii.size(), n);
-  check.size(C::InverseMasses, s.inverse_masses.size(), n);
-  check.size(C::Types, s.types.size(), n);
-  check.size(C::Flags, s.flags.size(), n);
-  if (!s.externals.empty()) check.size(C::Externals, s.externals.size(), n * w.force);
-  check.finite(C::Positions, s.positions);
-  check.finite(C::Radii, s.radii);
-  check.below(C::Types, s.types, limits.num_materials);
+  for_each_field<Dim>([&](const auto& field) {
+    const auto& values = s.*field.saved;
+    const auto column = static_cast<CheckpointColumn>(field.column);
+    if (!field.array.is_optional || !values.empty())
+      check.size(column, values.size(), n * static_cast<std::size_t>(field.width));
+  });
+  for (const auto column : {&CheckpointShare::positions, &CheckpointShare::radii})
+    check.finite(column_of(column), s.*column);
+  check.below(column_of(&CheckpointShare::types), s.types, limits.num_materials);
 }
 
 void check_links(const CheckpointShare& s, const Widths& w, const ShareLimits& limits,
@@ -111,24 +119,6 @@ std::string name_of(CheckpointColumn column) {
       return "totals";
     case C::Outruns:
       return "outruns";
-    case C::Ids:
-      return "ids";
-    case C::Positions:
-      return "positions";
-    case C::Velocities:
-      return "velocities";
-    case C::SurfaceSpeeds:
-      return "surface speeds";
-    case C::Radii:
-      return "radii";
-    case C::InverseMasses:
-      return "inverse masses";
-    case C::Types:
-      return "types";
-    case C::Flags:
-      return "flags";
-    case C::Externals:
-      return "external forces";
     case C::ContactIds:
       return "contact ids";
     case C::ContactSprings:
@@ -150,7 +140,11 @@ std::string name_of(CheckpointColumn column) {
     case C::BondStates:
       return "bond states";
   }
-  return "number " + std::to_string(static_cast<std::uint32_t>(column));
+  std::string name = "number " + std::to_string(static_cast<std::uint32_t>(column));
+  for_each_field<3>([&](const auto& field) {
+    if (field.column == static_cast<std::uint32_t>(column)) name = field.name;
+  });
+  return name;
 }
 
 void CheckpointShare::clear() {
@@ -158,9 +152,10 @@ void CheckpointShare::clear() {
 }
 
 void check_share(const CheckpointShare& share, const ShareLimits& limits, const std::string& file) {
-  const Widths w = limits.dimension == 2 ? widths<2>() : widths<3>();
   const Check check(file);
-  check_particles(share, w, limits, check);
+  if (limits.dimension == 2) check_particles<2>(share, limits, check);
+  if (limits.dimension == 3) check_particles<3>(share, limits, check);
+  const Widths w = limits.dimension == 2 ? widths<2>() : widths<3>();
   check_links(share, w, limits, check);
   check.size(CheckpointColumn::Totals, share.totals.size(),
              1 + limits.num_walls * ExactSum::kDigits);

@@ -14,15 +14,7 @@ enum class CheckpointColumn : std::uint32_t {
   Totals = 2,   ///< broken bonds, then the digits of every wall's work; a sum over all lanes
   Outruns = 3,  ///< what the next check may still have to tell
 
-  Ids = 16,  ///< of particles
-  Positions = 18,
-  Velocities = 19,
-  SurfaceSpeeds = 20,
-  Radii = 21,
-  InverseMasses = 22,
-  Types = 23,
-  Flags = 24,
-  Externals = 25,
+  // from 16 on: fields of particles (fields.hpp)
 
   ContactIds = 32,
   ContactSprings = 33,
@@ -46,6 +38,7 @@ struct CheckpointShare {
   std::vector<double> positions, velocities;  ///< [m], [m/s]; Dim each
   std::vector<double> surface_speeds;         ///< u = r·omega [m/s]; 1 or 3 each
   std::vector<double> radii, inverse_masses;  ///< [m], [1/kg]
+  std::vector<double> densities;              ///< [kg/m³], 2D [kg/m²]
   std::vector<std::uint8_t> types, flags;
   std::vector<double> externals;  ///< force records, or none at all
 
@@ -64,33 +57,6 @@ struct CheckpointShare {
 
   void clear();
 };
-
-/// Calls visit(CheckpointColumn, vector&) for every column.
-template <class Share, class Visit>
-void for_each_column(Share& share, Visit&& visit) {
-  using C = CheckpointColumn;
-  visit(C::Totals, share.totals);
-  visit(C::Outruns, share.outruns);
-  visit(C::Ids, share.ids);
-  visit(C::Positions, share.positions);
-  visit(C::Velocities, share.velocities);
-  visit(C::SurfaceSpeeds, share.surface_speeds);
-  visit(C::Radii, share.radii);
-  visit(C::InverseMasses, share.inverse_masses);
-  visit(C::Types, share.types);
-  visit(C::Flags, share.flags);
-  visit(C::Externals, share.externals);
-  visit(C::ContactIds, share.contact_ids);
-  visit(C::ContactSprings, share.contact_springs);
-  visit(C::WallContactIds, share.wall_contact_ids);
-  visit(C::WallContactWalls, share.wall_contact_walls);
-  visit(C::WallContactImages, share.wall_contact_images);
-  visit(C::WallContactSprings, share.wall_contact_springs);
-  visit(C::BondIds, share.bond_ids);
-  visit(C::BondLaws, share.bond_laws);
-  visit(C::BondLengths, share.bond_lengths);
-  visit(C::BondStates, share.bond_states);
-}
 
 /// What a share may refer to.
 struct ShareLimits {

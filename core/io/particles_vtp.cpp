@@ -1,6 +1,9 @@
-#include <limits>
+#include <string>
+
+#include <fmt/format.h>
 
 #include <barchan/core/error.hpp>
+#include <barchan/core/io/particle_columns.hpp>
 #include <barchan/core/io/particle_file.hpp>
 #include <barchan/core/io/text_file.hpp>
 #include <barchan/core/io/vtp.hpp>
@@ -8,39 +11,57 @@
 namespace barchan {
 namespace {
 
+std::string needed_arrays() {
+  std::string names;
+  for (const FileField& field : kFileFields) {
+    if (!field.array.empty()) names += (names.empty() ? "" : ", ") + std::string(field.array);
+  }
+  return names + " are needed";
+}
+
 template <class Number>
-const std::vector<Number>& values_of(const VtpPiece& piece, const char* name, int components,
+const std::vector<Number>& values_of(const VtpPiece& piece, const FileField& field,
                                      const std::string& file) {
-  const VtpColumn* column = piece.find(name);
+  if constexpr (std::is_same_v<Number, double>)
+    if (field.array.empty()) return piece.points;
+  const VtpColumn* column = piece.find(field.array);
   const auto* values =
       column == nullptr ? nullptr : std::get_if<std::vector<Number>>(&column->values);
-  if (values == nullptr || column->components != components) {
+  if (values == nullptr || column->components != field.num_components()) {
     throw InputError(SourcePlace{file, 0, 0},
-                     "has no array " + in_quotes(name) + " of the expected type",
-                     "id, type, radius, density, velocity and angular_velocity are needed");
+                     fmt::format("has no array '{}' of the expected type", field.array),
+                     needed_arrays());
   }
   return *values;
 }
 
-Vec3 row_of(const std::vector<double>& values, std::size_t i) {
-  return {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-}
+/// Numbers of an array that holds this member.
+template <class T>
+using NumberOf = std::conditional_t<std::is_same_v<T, Vec3>, double, T>;
 
 void append_piece(ParticleFile& result, const VtpPiece& piece, const std::string& file) {
   if (piece.are_lines)
     throw InputError(SourcePlace{file, 0, 0}, "holds bonds, not particles",
                      "give the file of the particles, whose name lacks _bonds");
-  const auto& id = values_of<std::int64_t>(piece, "id", 1, file);
-  const auto& type = values_of<std::int32_t>(piece, "type", 1, file);
-  const auto& radius = values_of<double>(piece, "radius", 1, file);
-  const auto& density = values_of<double>(piece, "density", 1, file);
-  const auto& velocity = values_of<double>(piece, "velocity", 3, file);
-  const auto& omega = values_of<double>(piece, "angular_velocity", 3, file);
+  std::vector<ParticleData> particles(piece.points.size() / 3);
+  for (const FileField& field : kFileFields) {
+    std::visit(
+        [&]<class T>(T ParticleData::*member) {
+          const auto& values = values_of<NumberOf<T>>(piece, field, file);
+          for (std::size_t i = 0; i < particles.size(); ++i) {
+            T& value = particles[i].*member;
+            if constexpr (std::is_same_v<T, Vec3>)
+              value = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+            else if constexpr (std::is_same_v<T, std::int32_t>)
+              value = values[i] > 0 ? values[i] - 1 : -1;
+            else
+              value = values[i];
+          }
+        },
+        field.value);
+  }
   const LineReader lines({}, file);
-  for (std::size_t i = 0; i < id.size(); ++i) {
-    ParticleData particle{id[i],           type[i] > 0 ? type[i] - 1 : -1, radius[i],
-                          density[i],      row_of(piece.points, i),        row_of(velocity, i),
-                          row_of(omega, i)};
+  for (const ParticleData& particle : particles) {
     check_particle_row(particle, lines);
     if (!(particle.position.allFinite() && particle.velocity.allFinite() &&
           particle.omega.allFinite())) {
@@ -61,32 +82,50 @@ ParticleFile parse_particles_vtp(std::string_view text, const std::string& file)
   return result;
 }
 
-void write_particles_vtp(const std::string& path, std::span<const ParticleData> particles) {
-  std::vector<std::int64_t> id;
-  std::vector<std::int32_t> type;
-  std::vector<double> radius, density, points, velocity, omega;
-  const auto append = [](std::vector<double>& to, const Vec3& v) {
-    to.insert(to.end(), {v.x(), v.y(), v.z()});
-  };
-  for (const ParticleData& p : particles) {
-    id.push_back(p.id);
-    type.push_back(p.type + 1);
-    radius.push_back(p.radius);
-    density.push_back(p.density);
-    append(points, p.position);
-    append(velocity, p.velocity);
-    append(omega, p.omega);
+ParticleArrays::ParticleArrays() {
+  for (std::size_t f = 0; f < kFileFields.size(); ++f) {
+    std::visit([&]<class T>(T ParticleData::*) { values_[f] = std::vector<NumberOf<T>>(); },
+               kFileFields[f].value);
   }
-  using Doubles = std::span<const double>;
-  VtpArrays arrays;
-  arrays.points = points;
-  arrays.fields = {{"id", 1, std::span<const std::int64_t>(id)},
-                   {"type", 1, std::span<const std::int32_t>(type)},
-                   {"radius", 1, Doubles(radius)},
-                   {"density", 1, Doubles(density)},
-                   {"velocity", 3, Doubles(velocity)},
-                   {"angular_velocity", 3, Doubles(omega)}};
-  write_vtp(path, arrays);
+}
+
+void ParticleArrays::add(const ParticleData& particle) {
+  for (std::size_t f = 0; f < kFileFields.size(); ++f) {
+    std::visit(
+        [&]<class T>(T ParticleData::*member) {
+          const T& value = particle.*member;
+          auto& values = std::get<std::vector<NumberOf<T>>>(values_[f]);
+          if constexpr (std::is_same_v<T, Vec3>)
+            values.insert(values.end(), {value.x(), value.y(), value.z()});
+          else
+            values.push_back(std::is_same_v<T, std::int32_t> ? value + T{1} : value);
+        },
+        kFileFields[f].value);
+  }
+}
+
+VtpArrays ParticleArrays::arrays(std::int64_t step, double time) const {
+  VtpArrays arrays{step, time, {}, {}};
+  for (std::size_t f = 0; f < kFileFields.size(); ++f) {
+    const FileField& field = kFileFields[f];
+    if (field.array.empty()) {
+      arrays.points = std::get<std::vector<double>>(values_[f]);
+      continue;
+    }
+    std::visit(
+        [&]<class T>(const std::vector<T>& values) {
+          arrays.fields.push_back(
+              {std::string(field.array), field.num_components(), std::span<const T>(values)});
+        },
+        values_[f]);
+  }
+  return arrays;
+}
+
+void write_particles_vtp(const std::string& path, std::span<const ParticleData> particles) {
+  ParticleArrays arrays;
+  for (const ParticleData& p : particles) arrays.add(p);
+  write_vtp(path, arrays.arrays(0, 0.0));
 }
 
 }  // namespace barchan

@@ -34,7 +34,7 @@ RunResults::RunResults(Simulation& simulation, RunFolder folder, const ParticleS
       spec_(std::move(spec)),
       series_every_(series_interval(simulation.model())),
       snapshots_every_(simulation.model().output.snapshots_every),
-      snapshots_(folder_.file("snapshots"), Densities(simulation.model(), particles)) {
+      snapshots_(folder_.file("snapshots")) {
   if (snapshots_every_ <= 0) snapshots_every_ = kNever;
   const bool continues = spec_.continues;
   on_rank_zero([&] { continues ? folder_.resume() : folder_.begin(); });

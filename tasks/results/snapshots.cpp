@@ -7,48 +7,13 @@
 #include <fmt/format.h>
 
 #include <barchan/core/io/bond_lines.hpp>
+#include <barchan/core/io/particle_columns.hpp>
 #include <barchan/core/io/particle_file.hpp>
 #include <barchan/tasks/results/agree.hpp>
 #include <barchan/tasks/results/own_files.hpp>
 
 namespace barchan {
 namespace {
-
-/// The particles of one rank, column by column.
-struct Columns {
-  std::vector<double> points, radius, density, velocity, omega;
-  std::vector<std::int64_t> id;
-  std::vector<std::int32_t> type, rank;
-
-  Columns(const Simulation& simulation, const Densities& densities) {
-    rank.assign(static_cast<std::size_t>(simulation.num_owned()), simulation.communicator().rank());
-    simulation.for_each_owned([&](const OwnedParticle& p) {
-      id.push_back(p.id);
-      type.push_back(p.type + 1);
-      radius.push_back(p.radius);
-      density.push_back(densities.of(p.id, p.type));
-      for (int c = 0; c < 3; ++c) {
-        points.push_back(p.position[c]);
-        velocity.push_back(p.velocity[c]);
-        omega.push_back(p.omega[c]);
-      }
-    });
-  }
-
-  [[nodiscard]] VtpArrays arrays(const Simulation& simulation) const {
-    using Reals = std::span<const double>;
-    using Ints = std::span<const std::int32_t>;
-    VtpArrays arrays{simulation.step(), simulation.time(), points, {}};
-    arrays.fields = {{"id", 1, std::span<const std::int64_t>(id)},
-                     {"type", 1, Ints(type)},
-                     {"radius", 1, Reals(radius)},
-                     {"density", 1, Reals(density)},
-                     {"velocity", 3, Reals(velocity)},
-                     {"angular_velocity", 3, Reals(omega)},
-                     {"rank", 1, Ints(rank)}};
-    return arrays;
-  }
-};
 
 std::string piece_name(std::int64_t step, int rank) {
   return fmt::format("step_{:09}_rank_{}.vtp", step, rank);
@@ -59,23 +24,6 @@ std::string whole_name(std::int64_t step) {
 }
 
 }  // namespace
-
-Densities::Densities(const Model& model, const ParticleSet& particles) {
-  for (const Material& material : model.materials) of_material_.push_back(material.density);
-  for (const ParticleData& p : particles.particles) {
-    if (p.density != of_material_[static_cast<std::size_t>(p.type)])
-      others_.emplace_back(p.id, p.density);
-  }
-  std::sort(others_.begin(), others_.end());
-}
-
-double Densities::of(std::int64_t id, std::int32_t type) const {
-  const auto it =
-      std::lower_bound(others_.begin(), others_.end(), id,
-                       [](const auto& entry, std::int64_t wanted) { return entry.first < wanted; });
-  if (it != others_.end() && it->first == id) return it->second;
-  return of_material_[static_cast<std::size_t>(type)];
-}
 
 void SnapshotWriter::resume(const Simulation& simulation, std::int64_t every) {
   namespace fs = std::filesystem;
@@ -104,8 +52,12 @@ void SnapshotWriter::resume(const Simulation& simulation, std::int64_t every) {
 void SnapshotWriter::write(Simulation& simulation) {
   const std::int64_t step = simulation.step();
   const std::string name = folder_ + "/" + piece_name(step, simulation.communicator().rank());
-  const Columns columns(simulation, densities_);
-  const VtpArrays arrays = columns.arrays(simulation);
+  ParticleArrays particles;
+  simulation.for_each_owned([&](const OwnedParticle& p) { particles.add(p); });
+  const std::vector<std::int32_t> rank(static_cast<std::size_t>(simulation.num_owned()),
+                                       simulation.communicator().rank());
+  VtpArrays arrays = particles.arrays(step, simulation.time());
+  arrays.fields.push_back({"rank", 1, std::span<const std::int32_t>(rank)});
   agree(simulation.communicator(), [&] { write_vtp(name, arrays); });
   write_whole(whole_name(step), arrays, simulation);
   if (!simulation.model().bond_laws.empty()) write_bonds(simulation);

@@ -9,24 +9,11 @@
 
 namespace barchan {
 
-/// Densities [kg/m³, 2D kg/m²] that a simulation does not keep: those that differ from their
-/// material's.
-class Densities {
- public:
-  Densities(const Model& model, const ParticleSet& particles);
-  [[nodiscard]] double of(std::int64_t id, std::int32_t type) const;
-
- private:
-  std::vector<double> of_material_;
-  std::vector<std::pair<std::int64_t, double>> others_;  ///< by id
-};
-
 /// Snapshots of a run: one piece a rank, a .pvtp a time, a .pvd in all; where the deck has bond
 /// laws the same for bonds, in files beside those of the particles (bonds_path).
 class SnapshotWriter {
  public:
-  SnapshotWriter(std::string folder, Densities densities)
-      : folder_(std::move(folder)), densities_(std::move(densities)) {}
+  explicit SnapshotWriter(std::string folder) : folder_(std::move(folder)) {}
 
   /// Keeps the snapshots in the folder that are before the present step and at multiples of
   /// `every`; removes the others, which an earlier run wrote at its end or later. Collective.
@@ -41,7 +28,6 @@ class SnapshotWriter {
   void write_whole(const std::string& name, const VtpArrays& arrays, const Simulation& simulation);
 
   std::string folder_;
-  Densities densities_;
   std::vector<PvdEntry> entries_;
   std::int64_t last_step_ = -1;
 };

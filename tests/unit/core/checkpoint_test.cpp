@@ -43,6 +43,7 @@ CheckpointShare some_share(int num_particles, std::int64_t first_id) {
     s.surface_speeds.push_back(number());
     s.radii.push_back(0.05);
     s.inverse_masses.push_back(1.0);
+    s.densities.push_back(number());
     s.types.push_back(static_cast<std::uint8_t>(p % 3));
     s.flags.push_back(0);
   }

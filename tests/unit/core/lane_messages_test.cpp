@@ -21,15 +21,24 @@ World<2> world_with_a_wall_and_a_bond() {
   return world;
 }
 
+using Store = ParticleStore<2>;
+
+std::int64_t& id(RowRecord<2>& p) {
+  return *p.values<&Store::id>();
+}
+std::int64_t& key(RowRecord<2>& p) {
+  return *p.values<&Store::key>();
+}
+
 /// A migrant with a contact, a wall and a bond.
 Migration<2> a_migration(const World<2>& world) {
   Migration<2> m;
-  ParticleRecord<2> p{};
-  p.id = 7;
-  p.motion[0] = 3.5;
-  p.motion[1] = 1.2;
-  p.key = world.grid.key(p.motion);
-  p.type = 1;
+  RowRecord<2> p;
+  id(p) = 7;
+  p.values<&Store::motion>()[0] = 3.5;
+  p.values<&Store::motion>()[1] = 1.2;
+  key(p) = world.grid.key(p.values<&Store::motion>());
+  *p.values<&Store::type>() = 1;
   m.particles = {p};
   m.contacts = {{0, 9, {0.25}}};
   m.walls = {{0, 0, {-1, 0, 0}, {0.5}}};
@@ -42,9 +51,9 @@ TEST(LaneMessages, BringArrivalsAcrossWithHistoryAndBonds) {
   std::vector<std::byte> message;
   encode(a_migration(world), message);
 
-  const Migration<2> came = decode_migration(message, world, 0, kSlabs);
+  Migration<2> came = decode_migration(message, world, 0, kSlabs);
 
-  EXPECT_EQ(came.particles.at(0).id, 7);
+  EXPECT_EQ(id(came.particles.at(0)), 7);
   EXPECT_EQ(came.contacts.at(0).spring[0], 0.25);
   EXPECT_EQ(came.walls.at(0).spring[0], 0.5);
   EXPECT_EQ(came.walls.at(0).image, (WallImage{-1, 0, 0}));
@@ -60,11 +69,11 @@ TEST(LaneMessages, RefuseWhatWouldLeaveAnArray) {
     encode(m, message);
     EXPECT_THROW((void)decode_migration(message, world, 0, kSlabs), RunError);
   };
-  refuses([](Migration<2>& m) { m.particles[0].id = 0; });
-  refuses([](Migration<2>& m) { m.particles[0].key = -1; });
-  refuses([](Migration<2>& m) { m.particles[0].key += 1; });
-  refuses([](Migration<2>& m) { m.particles[0].type = 2; });
-  refuses([](Migration<2>& m) { m.particles[0].flags = 4; });
+  refuses([](Migration<2>& m) { id(m.particles[0]) = 0; });
+  refuses([](Migration<2>& m) { key(m.particles[0]) = -1; });
+  refuses([](Migration<2>& m) { key(m.particles[0]) += 1; });
+  refuses([](Migration<2>& m) { *m.particles[0].values<&Store::type>() = 2; });
+  refuses([](Migration<2>& m) { *m.particles[0].values<&Store::flags>() = 4; });
   refuses([](Migration<2>& m) { m.contacts[0].handle = 1; });
   refuses([](Migration<2>& m) { m.contacts[0].handle = -1; });
   refuses([](Migration<2>& m) { m.walls[0].number = 1; });
@@ -101,13 +110,13 @@ TEST(LaneMessages, TellAParticleThatJumpedOverAStrip) {
 
 TEST(LaneMessages, RefuseGhostsOutOfOrderOrOfAnotherSlab) {
   const World<2> world = world_with_a_wall_and_a_bond();
-  ParticleRecord<2> first = a_migration(world).particles[0], second = first;
-  second.id = 8;
-  first.motion[1] -= 1.0;  // the cell before
-  first.key = world.grid.key(first.motion);
-  ASSERT_GT(second.key, first.key);
-  const int slab = static_cast<int>(first.key / world.grid.slab_size());
-  const auto decode = [&world](const std::vector<ParticleRecord<2>>& ghosts, int of_slab) {
+  RowRecord<2> first = a_migration(world).particles[0], second = first;
+  id(second) = 8;
+  first.values<&Store::motion>()[1] -= 1.0;  // the cell before
+  key(first) = world.grid.key(first.values<&Store::motion>());
+  ASSERT_GT(key(second), key(first));
+  const int slab = static_cast<int>(key(first) / world.grid.slab_size());
+  const auto decode = [&world](const std::vector<RowRecord<2>>& ghosts, int of_slab) {
     std::vector<std::byte> message;
     ByteWriter(message).put_counted(ghosts);
     return decode_ghosts(message, world, of_slab).size();

@@ -189,6 +189,31 @@ TEST(Lane, SkinScheduleAndOrderAreInNoBit) {
   expect_same_bits_with_any_lists<3>();
 }
 
+TEST(Lane, NamesTheLowerIdOfTheWorstOverlapFirstOnAnyCuts) {
+  const Domain domain = long_box<2>(false);
+  World<2> world = world_of<2>(domain, kCutoff, kSkin, 200);
+  std::vector<ParticleData> pair = random_particles(2, domain, 2, 0.5, 5);
+  for (const double way : {-1.0, 1.0}) {  // the lower id on either side, and so in either row
+    for (const int begin : {0, 4}) {
+      for (ParticleData& p : pair) p.position = Vec3(7.0, 1.0, 0.0);
+      pair[0].position.x() += 0.3 * way;
+      std::vector<int> cuts{0, 6, 12};
+      if (begin == 0) cuts = {0, 12};
+      Lanes<2> lanes(world, cuts);
+      lanes.seed(pair);
+      WorstOverlap worst;
+      for (std::size_t l = 0; l + 1 < cuts.size(); ++l) {
+        const WorstOverlap here = lanes[l].worst_overlap();
+        if (here.is_worse_than(worst)) worst = here;
+      }
+      EXPECT_EQ(worst.id, std::min(pair[0].id, pair[1].id));
+      EXPECT_EQ(worst.with, std::max(pair[0].id, pair[1].id));
+      const ParticleData& first = pair[0].id == worst.id ? pair[0] : pair[1];
+      EXPECT_EQ(worst.position[0], first.position.x());
+    }
+  }
+}
+
 TEST(Lane, BondsMoveWithTheirParticlesAndKeepTheirState) {
   const Domain domain = long_box<2>(false);
   std::vector<ParticleData> chain;
