@@ -16,8 +16,8 @@ namespace barchan {
 ///       spin   | ux uy uz rho|
 ///       force  | fx fy fz S  | tx ty tz –   |
 ///
-/// rho is the density; u = r·omega is the surface speed [m/s]; ft, (tx ty tz) are torque / r [N]; S is the sum of the
-/// sizes of contact forces. A fixed particle has 1/m = 0.
+/// rho is the density; u = r·omega is the surface speed [m/s]; ft, (tx ty tz) are torque / r [N]; S
+/// is the sum of the sizes of contact forces. A fixed particle has 1/m = 0.
 template <int Dim>
 struct Layout;
 

@@ -8,7 +8,8 @@
 
 namespace barchan {
 
-/// Particles of one lane (fields.hpp says what they have), by cells, then two rows that belong to nobody, then ghosts:
+/// Particles of one lane (fields.hpp says what they have), by cells, then two rows that belong to
+/// nobody, then ghosts:
 ///
 ///   | owned 0 … n−1 | waste n, n+1 | left ghosts | right ghosts |
 ///

@@ -7,7 +7,7 @@
 
 namespace barchan {
 
-/// A row from what a deck or file says of a particle. Positions are wrapped and cells found by the caller.
+/// A row from what a deck or file says of a particle. The caller wraps positions and finds cells.
 template <int Dim>
 void set_particle(ParticleStore<Dim>& store, std::int32_t row, const ParticleData& particle,
                   bool is_bonded);
