@@ -12,6 +12,7 @@
 #include <barchan/core/validate.hpp>
 #include <barchan/tasks/check_input.hpp>
 #include <barchan/tasks/engine.hpp>
+#include <barchan/tasks/graph_dot.hpp>
 #include <barchan/tasks/stop_request.hpp>
 
 namespace barchan {

@@ -18,6 +18,12 @@
 
 namespace barchan {
 
+#ifdef BARCHAN_WITH_TSAN
+inline constexpr bool kTellsOrder = true;
+#else
+inline constexpr bool kTellsOrder = false;
+#endif
+
 /// All that this thread has done precedes all that follows an acquire of the same edge.
 inline void tell_release([[maybe_unused]] const void* edge) {
 #ifdef BARCHAN_WITH_TSAN
@@ -30,25 +36,5 @@ inline void tell_acquire([[maybe_unused]] const void* edge) {
   __tsan_acquire(const_cast<void*>(edge));
 #endif
 }
-
-/// What was done before is seen by the node's task.
-template <typename Node, typename Message>
-void put(Node& node, const Message& message) {
-  tell_release(&node);
-  node.try_put(message);
-}
-
-/// As long as a task of a graph runs: after what was put into its node, before what waits for the
-/// graph.
-class TaskOrder {
- public:
-  TaskOrder(const void* node, const void* graph) : graph_(graph) { tell_acquire(node); }
-  ~TaskOrder() { tell_release(graph_); }
-  TaskOrder(const TaskOrder&) = delete;
-  TaskOrder& operator=(const TaskOrder&) = delete;
-
- private:
-  const void* graph_;
-};
 
 }  // namespace barchan

@@ -11,7 +11,7 @@ bool has(const std::string& text, const std::string& part) {
 
 GraphShape two_lanes() {
   GraphShape shape;
-  shape.lanes = {{3, true, true, true, false}, {1, true, true, false, true}};
+  shape.lanes = {{3, true, true}, {1, true, true}};
   shape.neighbours = {0, 2};
   return shape;
 }
@@ -36,6 +36,13 @@ TEST(GraphDot, LetsMessagesReachTheLanesAtTheEndsOfTheStripOnly) {
   EXPECT_TRUE(has(dot, "halo from rank 2 is in"));
 }
 
+TEST(GraphDot, DrawsTheCutBetweenLanesAsAnEdgeIntoTheNextStep) {
+  const std::string dot = cluster_of(two_lanes(), 1);
+
+  EXPECT_TRUE(has(dot, "r1_right0 -> r1_left1 [color=\"#888888\", constraint=false"));
+  EXPECT_TRUE(has(dot, "r1_left1 -> r1_right0 [color=\"#888888\", constraint=false"));
+}
+
 TEST(GraphDot, HasNoArrivalWhereThereIsNoNeighbour) {
   GraphShape shape = two_lanes();
   shape.neighbours = {};
@@ -49,8 +56,9 @@ TEST(GraphDot, WaitsForMessagesBeforeTheFirstChunkWhenSequential) {
 
   const std::string dot = cluster_of(shape, 0);
 
-  EXPECT_TRUE(has(dot, "r0_arrived_left -> r0_begin"));
-  EXPECT_FALSE(has(dot, "poll\"]"));
+  EXPECT_TRUE(has(dot, "r0_begin -> r0_await;"));
+  EXPECT_TRUE(has(dot, "r0_await -> r0_chunks1;"));
+  EXPECT_FALSE(has(dot, "r0_chunks0 -> r0_arrived"));
 }
 
 }  // namespace

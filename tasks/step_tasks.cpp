@@ -1,0 +1,132 @@
+#include <barchan/tasks/step_tasks.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace barchan {
+namespace {
+
+StepTask begin() {
+  return {Work::Begin};
+}
+StepTask end() {
+  return {Work::End};
+}
+StepTask await() {
+  return {Work::Await};
+}
+StepTask await_right() {
+  return {Work::AwaitRight};
+}
+StepTask chunks(int lane) {
+  return {Work::Chunks, lane};
+}
+StepTask band(int lane, Side side) {
+  return {side == Side::Left ? Work::LeftBand : Work::RightBand, lane};
+}
+StepTask arrived(Side side) {
+  return {side == Side::Left ? Work::ArrivedLeft : Work::ArrivedRight};
+}
+
+class Writer {
+ public:
+  explicit Writer(const GraphShape& shape) : shape_(shape) {}
+
+  StepTasks write() && {
+    // Before the bands of the same chunks: whom oneTBB tells last, the worker takes up first.
+    if (awaits_) write_await();
+    for (int l = 0; l < shape_.num_lanes(); ++l) write_lane(l);
+    for (const Side side : kSides) {
+      if (shape_.neighbours.has(side)) write_arrival(side);
+    }
+    return std::move(list_);
+  }
+
+ private:
+  void write_lane(int l) {
+    std::vector<StepTask> chain{begin()};
+    if (awaits_ && shape_.is_sequential) chain.push_back(await());
+    chain.push_back(chunks(l));
+    if (awaits_ && is_lone_ && !shape_.is_sequential) chain.push_back(await());
+    if (shape_.has_band(l, Side::Left)) chain.push_back(band(l, Side::Left));
+    if (awaits_right_ && is_lone_) chain.push_back(await_right());
+    if (shape_.has_band(l, Side::Right)) chain.push_back(band(l, Side::Right));
+    chain.push_back(end());
+    for (std::size_t n = 1; n < chain.size(); ++n) precedes(chain[n - 1], chain[n]);
+    write_next(l);
+  }
+
+  void write_next(int l) {
+    const StepTask last{shape_.last_work(l), l};
+    precedes_next(last, chunks(l));
+    if (goes_on_) arrow(last, chunks(l), Way::Message, true, "goes on");
+    const int num_lanes = shape_.num_lanes();
+    for (const Side side : kSides) {
+      if (!shape_.has_band(l, side) || shape_.is_remote(l, side)) continue;
+      const int beside = (l + (side == Side::Left ? num_lanes - 1 : 1)) % num_lanes;
+      precedes_next(band(l, side), band(beside, opposite(side)));
+    }
+  }
+
+  /// Of several lanes; a lone one awaits in its chain.
+  void write_await() {
+    if (is_lone_) return;
+    for (int l = 0; l < shape_.num_lanes() && !shape_.is_sequential; ++l) {
+      precedes(chunks(l), await());
+      precedes(await(), end());
+    }
+    if (!awaits_right_) return;
+    precedes(await(), await_right());
+    precedes(band(0, Side::Left), await_right());
+    precedes(await_right(), end());
+  }
+
+  void write_arrival(Side side) {
+    precedes(arrived(side), band(shape_.outer_lane(side), side));
+    message(begin(), arrived(side), "after a rebuild");
+    for (int l = 0; l < shape_.num_lanes() && !shape_.is_sequential; ++l)
+      message(chunks(l), arrived(side), "poll");
+    message(await(), arrived(side), "poll");
+    if (awaits_right_ && side == Side::Right) message(await_right(), arrived(side), "poll");
+  }
+
+  void precedes(const StepTask& from, const StepTask& to) { arrow(from, to, Way::Edge, false, ""); }
+  void precedes_next(const StepTask& from, const StepTask& to) {
+    arrow(from, to, Way::Edge, true, "");
+  }
+  void message(const StepTask& from, const StepTask& to, const char* note) {
+    arrow(from, to, Way::Message, false, note);
+  }
+  void arrow(const StepTask& from, const StepTask& to, Way way, bool is_next, const char* note) {
+    const StepArrow arrow{index_of_task(from), index_of_task(to), way, is_next, note};
+    if (std::find(list_.arrows.begin(), list_.arrows.end(), arrow) == list_.arrows.end())
+      list_.arrows.push_back(arrow);
+  }
+  int index_of_task(const StepTask& task) {
+    if (list_.find(task) < 0) list_.tasks.push_back(task);
+    return list_.find(task);
+  }
+
+  const GraphShape& shape_;
+  const bool is_lone_ = shape_.num_lanes() == 1;
+  const bool has_left_ = shape_.neighbours.has(Side::Left);
+  const bool has_right_ = shape_.neighbours.has(Side::Right);
+  const bool awaits_ = has_left_ || has_right_;
+  const bool awaits_right_ =
+      has_left_ && has_right_ && (shape_.returns || (is_lone_ && !shape_.is_sequential));
+  const bool goes_on_ = !awaits_ && !is_lone_;
+  StepTasks list_;
+};
+
+}  // namespace
+
+int StepTasks::find(const StepTask& task) const {
+  const auto at = std::find(tasks.begin(), tasks.end(), task);
+  return at == tasks.end() ? -1 : static_cast<int>(at - tasks.begin());
+}
+
+StepTasks step_tasks(const GraphShape& shape) {
+  return Writer(shape).write();
+}
+
+}  // namespace barchan

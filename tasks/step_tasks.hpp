@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <barchan/comm/neighbours.hpp>
+
+namespace barchan {
+
+/// What a task of a step does. Begin and the arrivals are messages into the graph; End is who waits
+/// for it.
+enum class Work : std::uint8_t {
+  Begin,
+  Chunks,  ///< of a lane, one after the other; polls the exchange after each
+  LeftBand,
+  RightBand,
+  ArrivedLeft,
+  ArrivedRight,
+  Await,       ///< polls until the halos are in; where AwaitRight follows, until the left one is
+  AwaitRight,  ///< after the left band, until the right one is
+  End
+};
+
+/// One rank's lanes and neighbours, from which its tasks follow.
+struct GraphShape {
+  struct LaneShape {
+    int num_chunks = 0;
+    bool has_left = false, has_right = false;  ///< bands
+  };
+  std::vector<LaneShape> lanes;
+  Neighbours neighbours;
+  bool is_sequential = false;
+  bool returns = false;  ///< the right neighbour answers what the left band makes known
+
+  [[nodiscard]] int num_lanes() const { return static_cast<int>(lanes.size()); }
+  [[nodiscard]] bool has_band(int lane, Side side) const {
+    const LaneShape& l = lanes[static_cast<std::size_t>(lane)];
+    return side == Side::Left ? l.has_left : l.has_right;
+  }
+  /// The lane at this end of the strip.
+  [[nodiscard]] int outer_lane(Side side) const { return side == Side::Left ? 0 : num_lanes() - 1; }
+  [[nodiscard]] bool is_remote(int lane, Side side) const {
+    return lane == outer_lane(side) && neighbours.has(side);
+  }
+  [[nodiscard]] Work last_work(int lane) const {
+    if (has_band(lane, Side::Right)) return Work::RightBand;
+    return has_band(lane, Side::Left) ? Work::LeftBand : Work::Chunks;
+  }
+};
+
+struct StepTask {
+  Work work = Work::Begin;
+  int lane = 0;  ///< of chunks and bands
+
+  friend bool operator==(const StepTask&, const StepTask&) = default;
+};
+
+enum class Way : std::uint8_t {
+  Edge,    ///< of oneTBB; to End: its wait for all
+  Message  ///< put into the graph when it is known to be true, which no edge can tell beforehand
+};
+
+struct StepArrow {
+  int from = 0, to = 0;  ///< index of a task
+  Way way = Way::Edge;
+  bool is_next = false;   ///< to the task of the next step
+  const char* note = "";  ///< when a message is put
+
+  friend bool operator==(const StepArrow&, const StepArrow&) = default;
+};
+
+struct StepTasks {
+  std::vector<StepTask> tasks;
+  std::vector<StepArrow> arrows;
+
+  [[nodiscard]] int find(const StepTask& task) const;  ///< -1: there is none
+};
+
+/// One time step of one rank: its tasks and what each precedes. From this list come the edges of
+/// oneTBB and the orders that ThreadSanitizer is told (task_graph.hpp), and the picture
+/// (graph_dot.hpp).
+///
+///     begin ─► chunks(l) ─► left(l) ─► right(l) ─► end              for every lane l
+///                 ┆            ▲          ▲
+///                 ├┄┄► arrived(Left) ─────│────┄┄ outer lanes       ┄► polls, and puts a message
+///                 └┄┄► arrived(Right) ────┘
+///
+///   chunks(l)     precedes left(l) precedes right(l): a lane is one task's at a time
+///   last(l)       precedes chunks(l) of the next step, be it the same run's or a later one's
+///   arrived(side) precedes the band at that end of the strip: a message, since MPI knows no edges
+///   left(l)       precedes right(l − 1) of the next step, and right(l) left(l + 1): a cut in memory
+///   chunks(all)   precede await, which polls until all halos are in
+///   left(0)       precedes await_right, where the right neighbour answers the left band
+///
+/// A lone lane has nobody else to await halos: chunks ─► await ─► left ─► await_right ─► right.
+/// A sequential step awaits halos first: begin ─► await ─► chunks. A rank without neighbours may
+/// take several steps in a run: last(l) then also puts the message that the next step may begin.
+[[nodiscard]] StepTasks step_tasks(const GraphShape& shape);
+
+}  // namespace barchan
