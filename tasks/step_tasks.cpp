@@ -33,8 +33,9 @@ class Writer {
   explicit Writer(const GraphShape& shape) : shape_(shape) {}
 
   StepTasks write() && {
-    // Before the bands of the same chunks: whom oneTBB tells last, the worker takes up first.
-    if (awaits_) write_await();
+    // Of several that become ready a worker takes up the last one told: its own lane.
+    if (awaits_ && !is_lone_) write_await();
+    for (int l = 0; l < shape_.num_lanes(); ++l) write_cuts(l);
     for (int l = 0; l < shape_.num_lanes(); ++l) write_lane(l);
     for (const Side side : kSides) {
       if (shape_.neighbours.has(side)) write_arrival(side);
@@ -53,13 +54,13 @@ class Writer {
     if (shape_.has_band(l, Side::Right)) chain.push_back(band(l, Side::Right));
     chain.push_back(end());
     for (std::size_t n = 1; n < chain.size(); ++n) precedes(chain[n - 1], chain[n]);
-    write_next(l);
-  }
-
-  void write_next(int l) {
-    const StepTask last{shape_.last_work(l), l};
+    const StepTask last = chain[chain.size() - 2];
     precedes_next(last, chunks(l));
     if (goes_on_) arrow(last, chunks(l), Way::Message, true, "goes on");
+  }
+
+  /// In memory, to the lanes beside.
+  void write_cuts(int l) {
     const int num_lanes = shape_.num_lanes();
     for (const Side side : kSides) {
       if (!shape_.has_band(l, side) || shape_.is_remote(l, side)) continue;
@@ -70,7 +71,6 @@ class Writer {
 
   /// Of several lanes; a lone one awaits in its chain.
   void write_await() {
-    if (is_lone_) return;
     for (int l = 0; l < shape_.num_lanes() && !shape_.is_sequential; ++l) {
       precedes(chunks(l), await());
       precedes(await(), end());

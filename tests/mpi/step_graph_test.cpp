@@ -31,7 +31,7 @@ std::uint64_t digest_after(const Scenario& s, MPI_Comm comm, const RunOptions& o
   return sim.digest();
 }
 
-/// run() throws when a band was left out, so that one lost band in any step is seen.
+/// run() throws when a lane did not end its steps, so that one lost band in any step is seen.
 void expect_all_bands(const std::string& exchange, bool is_periodic) {
   const Scenario s = narrow_gas(num_ranks(), is_periodic);
   RunOptions options;

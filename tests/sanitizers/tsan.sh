@@ -7,7 +7,7 @@
 #
 # Debian's oneTBB and Open MPI are built without ThreadSanitizer. What they do by themselves is not judged
 # (ignore_noninstrumented_modules, tsan.supp); the orders that oneTBB makes between tasks are told by tell_release and
-# tell_acquire in tasks/thread_order.hpp, edge by edge, so that two tasks without an edge between them are still a race.
+# tell_acquire in tasks/task_graph.cpp, edge by edge, so that two tasks without an edge between them are still a race.
 # Tried with races planted for it: a counter that the tasks of all lanes share in a rebuild, and a chunk of a step
 # that writes what belongs to the next lane, were each reported; without them nothing was.
 #
