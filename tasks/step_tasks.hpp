@@ -66,6 +66,8 @@ struct StepArrow {
   bool is_next = false;   ///< to the task of the next step
   const char* note = "";  ///< when a message is put
 
+  /// Of `to`, where the step of `from` has this one.
+  [[nodiscard]] int parity_of_to(int parity) const { return is_next ? 1 - parity : parity; }
   friend bool operator==(const StepArrow&, const StepArrow&) = default;
 };
 

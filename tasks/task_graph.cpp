@@ -16,6 +16,9 @@ namespace {
 
 using Signal = tbb::flow::continue_msg;
 
+/// The edge from who runs the graph to all of its tasks, which look for their own edges behind it.
+const char begin_of_run = 0;
+
 bool is_message(Work work) {
   return work == Work::Begin || work == Work::ArrivedLeft || work == Work::ArrivedRight;
 }
@@ -101,9 +104,11 @@ void TaskGraph::build() {
       else if (is_message(work))
         nodes_->add(parity, std::make_unique<tbb::flow::broadcast_node<Signal>>(*nodes_->graph));
       else
-        nodes_->add(parity,
-                    std::make_unique<tbb::flow::continue_node<Signal>>(
-                        *nodes_->graph, [this, t, parity](const Signal&) { do_task(t, parity); }));
+        nodes_->add(parity, std::make_unique<tbb::flow::continue_node<Signal>>(
+                                *nodes_->graph, [this, t, parity](const Signal&) {
+                                  tell_acquire(&begin_of_run);
+                                  do_task(t, parity);
+                                }));
     }
   }
   const auto each_edge = [this](const auto& visit) {
@@ -114,7 +119,7 @@ void TaskGraph::build() {
   each_edge([this](const StepArrow& a) {
     for (const int parity : {0, 1})
       tbb::flow::make_edge(*nodes_->at(a.from, parity).out,
-                           *nodes_->at(a.to, a.is_next ? 1 - parity : parity).in);
+                           *nodes_->at(a.to, a.parity_of_to(parity)).in);
   });
   each_edge([this](const StepArrow& a) {
     if (a.is_next) put(a.to, 0);
@@ -130,7 +135,7 @@ void TaskGraph::tell_successors([[maybe_unused]] int task, [[maybe_unused]] int 
   if constexpr (kTellsOrder) {
     for (const StepArrow& a : list_.arrows) {
       if (a.from == task && a.way == Way::Edge)
-        tell_release(&nodes_->at(a.to, a.is_next ? 1 - parity : parity));
+        tell_release(&nodes_->at(a.to, a.parity_of_to(parity)));
     }
   }
 }
@@ -144,6 +149,7 @@ void TaskGraph::put(int task, int parity) {
 
 void TaskGraph::run(const std::function<void()>& begin) {
   nodes_->arena.execute([&] {
+    tell_release(&begin_of_run);
     begin();
     nodes_->graph->wait_for_all();
     tell_acquire(nodes_.get());
