@@ -79,18 +79,17 @@ struct StepTasks {
 };
 
 /// One time step of one rank: its tasks and what each precedes. From this list come the edges of
-/// oneTBB and the orders that ThreadSanitizer is told (task_graph.hpp), and the picture
-/// (graph_dot.hpp).
+/// oneTBB and the orders for ThreadSanitizer (task_graph.hpp), and the picture (graph_dot.hpp).
 ///
 ///     begin ─► chunks(l) ─► left(l) ─► right(l) ─► end              for every lane l
 ///                 ┆            ▲          ▲
-///                 ├┄┄► arrived(Left) ─────│────┄┄ outer lanes       ┄► polls, and puts a message
+///           polls ├┄┄► arrived(Left)      │                     of the lanes at the strip's ends
 ///                 └┄┄► arrived(Right) ────┘
 ///
 ///   chunks(l)     precedes left(l) precedes right(l): a lane is one task's at a time
 ///   last(l)       precedes chunks(l) of the next step, be it the same run's or a later one's
 ///   arrived(side) precedes the band at that end of the strip: a message, since MPI knows no edges
-///   left(l)       precedes right(l − 1) of the next step, and right(l) left(l + 1): a cut in memory
+///   left(l)       precedes right(l-1) of the next step, and right(l) left(l+1): a cut in memory
 ///   chunks(all)   precede await, which polls until all halos are in
 ///   left(0)       precedes await_right, where the right neighbour answers the left band
 ///
