@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include <barchan/comm/auto_exchange.hpp>
+#include <barchan/comm/make_exchange.hpp>
 #include <barchan/comm/mixed_exchange.hpp>
 #include <barchan/comm/mpi_error.hpp>
 #include <barchan/comm/mpi_session.hpp>

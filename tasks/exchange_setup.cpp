@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <barchan/comm/make_exchange.hpp>
 #include <barchan/comm/recorded_exchange.hpp>
 #include <barchan/core/error.hpp>
 #include <barchan/tasks/simulation.hpp>

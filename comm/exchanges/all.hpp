@@ -4,7 +4,7 @@
 
 #include <barchan/comm/slot_exchange.hpp>
 
-// One factory per exchange, each defined in the file of its name; exchange.cpp lists them.
+// One factory per exchange, each defined in the file of its name; make_exchange.cpp lists them.
 
 namespace barchan {
 

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <barchan/comm/make_exchange.hpp>
 #include <barchan/core/error.hpp>
 
 #include "running.hpp"

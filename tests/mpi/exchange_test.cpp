@@ -1,7 +1,7 @@
 // Values encode rank, side, step and index, so that a message that lands in the wrong place or step
 // shows.
 
-#include <barchan/comm/exchange.hpp>
+#include <barchan/comm/make_exchange.hpp>
 
 #include <algorithm>
 #include <array>

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include <barchan/comm/make_exchange.hpp>
 #include <barchan/core/error.hpp>
 
 #include "running.hpp"

@@ -6,6 +6,7 @@
 
 #include <barchan/comm/auto_exchange.hpp>
 #include <barchan/comm/clock_offset.hpp>
+#include <barchan/comm/make_exchange.hpp>
 #include <barchan/comm/plain_put.hpp>
 #include <barchan/core/error.hpp>
 

@@ -1,4 +1,4 @@
-#include <barchan/comm/exchange.hpp>
+#include <barchan/comm/make_exchange.hpp>
 
 #include <array>
 #include <vector>
