@@ -69,7 +69,7 @@ class RowRecord {
     std::size_t at = 0;
     for_each_array<Dim>([&]<class T>(const RowArray<Dim, T>& array) {
       const std::size_t bytes = static_cast<std::size_t>(array.width) * sizeof(T);
-      visit(array, at, bytes);
+      if (bytes > 0) visit(array, at, bytes);  // disks have no spin record
       at += bytes;
     });
     return at;
