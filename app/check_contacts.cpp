@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include <barchan/app/readable.hpp>
 #include <barchan/core/mass.hpp>
-#include <barchan/core/restitution.hpp>
 
 namespace barchan::app {
 namespace {
@@ -45,58 +46,62 @@ struct Restitution {
   double low = 0.0, high = 0.0;
 };
 
-Restitution restitution_of(const ContactConstants& law, bool no_tension, const InverseMasses& a,
+template <class Law>
+Restitution restitution_of(const ContactConstants& pair, bool no_tension, const InverseMasses& a,
                            const InverseMasses& b) {
-  if (law.restitution) return {*law.restitution, *law.restitution};
-  const auto at = [&](double inverse_mass) {
-    const double m = 1.0 / inverse_mass;
-    const double cn = law.cn.constant + law.cn.rate * m + law.cn.critical * std::sqrt(m);
-    return restitution_at(0.5 * cn / std::sqrt(law.kn * m), no_tension);
-  };
   const double heavy = std::min(a.low + b.of_heaviest, a.of_heaviest + b.low);
-  const double one = at(heavy), other = at(a.high + b.high);
+  const double one = Law::restitution(pair, 1.0 / heavy, no_tension),
+               other = Law::restitution(pair, 1.0 / (a.high + b.high), no_tension);
   return {std::min(one, other), std::max(one, other)};
 }
 
-std::string dashpot_text(const Dashpot& d) {
-  if (d.rate > 0.0) return fmt::format("{:.4g} · m/s", d.rate);
-  if (d.critical > 0.0) return fmt::format("{:.4g} · √m", d.critical);
-  return fmt::format("{:.4g}", d.constant);
-}
-
-std::string restitution_text(const ContactConstants& law, const Restitution& e) {
+template <class Pair>
+std::string restitution_text(const Pair& pair, const Restitution& e) {
   const std::string number = e.high - e.low < 5e-4 ? fmt::format("{:.4g}", e.high)
                                                    : fmt::format("{:.3g} … {:.3g}", e.low, e.high);
-  if (law.is_mixed) return number + ", mixed";
-  return law.restitution ? number : number + ", of the dashpot";
+  if (pair.is_mixed) return number + ", mixed";
+  return pair.restitution ? number : number + ", of the dashpot";
+}
+
+/// A row for every pair of materials that has constants.
+/// @param lossless  the names of those that lose no energy head on
+template <class Law>
+std::vector<std::vector<std::string>> rows_of(const LoadedDeck& loaded, std::string& lossless) {
+  const Model& model = loaded.deck.model;
+  const auto masses = inverse_masses(loaded);
+  std::vector<std::vector<std::string>> rows{{"pair"}};
+  rows[0].insert(rows[0].end(), std::begin(Law::kColumns), std::end(Law::kColumns));
+  rows[0].emplace_back("restitution");
+  const int n = static_cast<int>(model.materials.size());
+  for (int a = 0; a < n; ++a) {
+    for (int b = a; b < n; ++b) {
+      const ContactConstants& pair = model.contacts.at(a, b);
+      const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+      if (Law::stiffness(pair) == 0.0) continue;  // a pair that cannot meet
+      const std::string name = model.materials[i].name + "–" + model.materials[j].name;
+      const bool can_meet =
+          std::max(masses[i].low, masses[j].low) < kUnused && masses[i].high + masses[j].high > 0.0;
+      const auto e =
+          can_meet ? restitution_of<Law>(pair, model.contacts.no_tension, masses[i], masses[j])
+                   : Restitution{};
+      if (e.high == 1.0) lossless += (lossless.empty() ? "" : ", ") + name;
+      rows.push_back({name});
+      for (std::string& text : Law::texts(pair)) rows.back().push_back(std::move(text));
+      rows.back().push_back(
+          can_meet ? restitution_text(static_cast<const typename Law::Pair&>(pair), e) : "–");
+    }
+  }
+  return rows;
 }
 
 }  // namespace
 
 void print_contacts(const LoadedDeck& loaded) {
-  const Model& model = loaded.deck.model;
-  const auto masses = inverse_masses(loaded);
-  std::vector<std::vector<std::string>> rows{
-      {"pair", "kn [N/m]", "kt [N/m]", "cn [N·s/m]", "ct [N·s/m]", "friction", "restitution"}};
+  const ContactTable& contacts = loaded.deck.model.contacts;
   std::string lossless;
-  const int n = static_cast<int>(model.materials.size());
-  for (int a = 0; a < n; ++a) {
-    for (int b = a; b < n; ++b) {
-      const ContactConstants& law = model.contacts.at(a, b);
-      const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
-      if (law.kn == 0.0) continue;  // a pair that cannot meet
-      const std::string name = model.materials[i].name + "–" + model.materials[j].name;
-      const bool can_meet =
-          std::max(masses[i].low, masses[j].low) < kUnused && masses[i].high + masses[j].high > 0.0;
-      const auto e = can_meet ? restitution_of(law, model.contacts.no_tension, masses[i], masses[j])
-                              : Restitution{};
-      if (e.high == 1.0) lossless += (lossless.empty() ? "" : ", ") + name;
-      rows.push_back({name, fmt::format("{:.4g}", law.kn), fmt::format("{:.4g}", law.kt),
-                      dashpot_text(law.cn), dashpot_text(law.ct), fmt::format("{:.4g}", law.mu),
-                      can_meet ? restitution_text(law, e) : "–"});
-    }
-  }
-  std::printf("Contacts:%s\n%s", model.contacts.no_tension ? "" : " (normal forces may pull)",
+  const auto rows = with_law(
+      contacts.law, [&]<class Law>(Law /*law*/) { return rows_of<Law>(loaded, lossless); });
+  std::printf("Contacts:%s\n%s", contacts.no_tension ? "" : " (normal forces may pull)",
               table(rows).c_str());
   if (!lossless.empty())
     std::printf("  Warning: restitution 1, head-on collisions lose no energy: %s\n",

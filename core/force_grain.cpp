@@ -54,14 +54,14 @@ double largest_share(double overlap_limit) {
 
 /// What a particle may have to bear at once: as many contacts as neighbours fit around it, each
 /// with half of the largest overlap; or one impact.
-double largest_sum(const ContactConstants& law, const Largest& a, const Largest& b, double speed,
+double largest_sum(const ContactConstants& pair, const Largest& a, const Largest& b, double speed,
                    const Model& model) {
   const bool is_flat = model.dimension == 2;
   const double mass = a.mass * b.mass / (a.mass + b.mass);
-  const double damping = law.cn.constant + law.cn.rate * mass + law.cn.critical * std::sqrt(mass);
   const double overlap = largest_share(model.limits.overlap_error) * std::min(a.radius, b.radius);
-  const double squeezed = (is_flat ? 3.0 : 6.0) * law.kn * overlap;
-  return (1.0 + law.mu) * std::max(squeezed, damping * speed);
+  return with_law(model.contacts.law, [&]<class Law>(Law /*law*/) {
+    return Law::largest_force(pair, is_flat ? 3.0 : 6.0, overlap, mass, speed);
+  });
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include <barchan/core/contact_search.hpp>
 #include <barchan/core/departure.hpp>
 #include <barchan/core/lane_messages.hpp>
+#include <barchan/core/laws/history_table.hpp>
 #include <barchan/core/measures.hpp>
 #include <barchan/core/pair_list.hpp>
 #include <barchan/core/particle_store.hpp>
@@ -165,7 +166,7 @@ class Lane {
     unpack_history();
     return pairs_;
   }
-  /// Brings the springs of touching pairs back to their candidates' places. Cheap when nothing is
+  /// Brings the history of touching pairs back to their candidates' places. Cheap when nothing is
   /// packed.
   void unpack_history();
   void unpack_history_across(Side side);
@@ -254,9 +255,9 @@ class Lane {
   Slot owned_slot(std::int32_t low, std::int32_t high);
   Slot find_pair(PairList& list, std::pair<std::int32_t, std::int32_t> wanted) const;
   std::int32_t find_near(std::int32_t row, std::int64_t id) const;
-  bool place(std::int32_t a, std::int32_t b, const double* spring_a_to_b);
+  bool place(std::int32_t a, std::int32_t b, const double* history_a_to_b);
   void restore_wall_history();
-  static void put(const Slot& at, bool is_swapped, const double* spring);
+  void put(const Slot& at, bool is_swapped, const double* history) const;
   /// @param number  of every row that leaves, its place among the leavers
   void collect_history(std::array<Migration<Dim>, 2>& leaving,
                        std::span<const std::int32_t> number);
@@ -295,27 +296,28 @@ class Lane {
   Passage passage_;
   double step_travel_ = 0.0, travel_ = 0.0;  ///< bounds: of the last step, since the lists were cut
 
-  /// A contact's spring while lists are made anew, by the rows that it had before.
-  struct KeptContact {
-    std::int32_t i = 0, j = 0;
-    double spring[L::kSprings] = {};
-  };
-  std::vector<KeptContact> kept_;
-
-  /// Written where it stays: a copy of it soon after would wait for these stores.
-  static void keep(KeptContact& c, const PairList& list, std::int64_t k, std::int32_t i,
-                   std::int32_t j) {
-    c.i = i, c.j = j;
-    for (int q = 0; q < L::kSprings; ++q) c.spring[q] = list.springs<Dim>(k)[q * kBatch];
+  [[nodiscard]] const History& history_form() const {
+    return world_->laws.law().template in<Dim>().history;
   }
-  static void keep_springs(const PairList& list, std::vector<KeptContact>& to);
-  /// Springs of pairs that are in both.
-  void put_springs(PairList& list, std::span<const KeptContact> kept) const;
+  /// Contacts while lists are made anew, by the rows that they had before.
+  using KeptContacts = HistoryTable<std::array<std::int32_t, 2>>;
+  KeptContacts kept_;
+
+  template <class Length>
+  static void keep(KeptContacts& to, std::size_t at, const PairList& list, std::int64_t k,
+                   Length length) {
+    double* numbers = to.numbers.data() + at * static_cast<std::size_t>(length);
+    const double* from = list.history.data() + k / kBatch * kBatch * length + k % kBatch;
+    for (int c = 0; c < length; ++c) numbers[c] = from[c * kBatch];
+  }
+  static void keep_histories(const PairList& list, KeptContacts& to);
+  /// Of pairs that are in both.
+  void put_histories(PairList& list, const KeptContacts& kept) const;
 
   // between begin_rebuild and restore_history
   std::vector<std::int32_t> new_row_;  ///< of every source row; -1: left
   std::vector<std::int8_t> goes_;      ///< of every source row: 0 stays, 1 left, 2 right, kGone
-  std::vector<LooseContact<Dim>> loose_;
+  HistoryTable<LooseContact> loose_;
 
   std::vector<std::int64_t> removed_;  ///< ids that go in the next rebuild, ascending
   LinkCounts imbalance_;

@@ -47,22 +47,22 @@ void restore_particles(const CheckpointShare& share, ParticleStore<Dim>& store) 
 /// Of squared distances and of distances: what touches, and a little more for rounding.
 constexpr double kTouching = 1.0 + 1e-9;
 
-/// Those that touch. Others lose their spring in the next step anyway, and may be farther apart
+/// Those that touch. Others lose their history in the next step anyway, and may be farther apart
 /// than the lists of a restart reach.
 template <int Dim>
 void save_contacts(const PeriodicBox& box, const ParticleStore<Dim>& store, const PairList& list,
                    CheckpointShare& share) {
-  constexpr int kSprings = Layout<Dim>::kSprings;
   for (std::int64_t k = 0; k < list.size(); ++k) {
-    const double* spring = list.template springs<Dim>(k);
-    if (!list.template has_spring<Dim>(k)) continue;
+    const double* numbers = list.history_of(k);
+    if (!list.has_history(k)) continue;
     const std::int32_t i = list.i[static_cast<std::size_t>(k)],
                        j = list.j[static_cast<std::size_t>(k)];
     const double reach = store.radius(i) + store.radius(j);
     if (distance2<Dim>(box, store.x(i), store.x(j)) > kTouching * reach * reach) continue;
     for (const std::int32_t end : {i, j})
       share.contact_ids.push_back(store.id[static_cast<std::size_t>(end)]);
-    for (int c = 0; c < kSprings; ++c) share.contact_springs.push_back(spring[c * kBatch]);
+    for (int c = 0; c < list.history_length; ++c)
+      share.contact_springs.push_back(numbers[c * kBatch]);
   }
 }
 
@@ -79,7 +79,7 @@ void Lane<Dim>::save(CheckpointShare& share) {
 
   for (const WallContact<Dim>& c : walls_.list()) {
     const auto w = static_cast<std::size_t>(c.wall);
-    if (!has_spring(c) ||
+    if (!has_history(c) ||
         world_->wall_shapes[w].foot(world_->walls[w].point, c.image, store_.x(c.row)).distance >
             kTouching * store_.radius(c.row))
       continue;
@@ -87,8 +87,8 @@ void Lane<Dim>::save(CheckpointShare& share) {
     share.wall_contact_walls.push_back(c.wall);
     share.wall_contact_images.insert(share.wall_contact_images.end(), c.image.begin(),
                                      c.image.end());
-    share.wall_contact_springs.insert(share.wall_contact_springs.end(), c.spring,
-                                      c.spring + L::kSprings);
+    share.wall_contact_springs.insert(share.wall_contact_springs.end(), c.history,
+                                      c.history + history_form().length);
   }
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.bonds().size()); ++b) {
     const bool is_right_hand =
@@ -136,18 +136,19 @@ void Lane<Dim>::restore(int slab_begin, int slab_end, const CheckpointShare& sha
 template <int Dim>
 void Lane<Dim>::queue_links(const CheckpointShare& share,
                             const std::unordered_map<std::int64_t, std::int32_t>& row_of) {
-  loose_.clear();
+  const History& form = history_form();
+  const auto length = static_cast<std::size_t>(form.length);
+  loose_.clear(form.length);
   for (std::size_t k = 0; k < share.contact_ids.size() / 2; ++k) {
     const std::int64_t ends[2] = {share.contact_ids[2 * k], share.contact_ids[2 * k + 1]};
     const auto first = row_of.find(ends[0]), second = row_of.find(ends[1]);
     if (first == row_of.end() && second == row_of.end()) continue;
     const bool is_second = first == row_of.end();
-    LooseContact<Dim> c{is_second ? second->second : first->second, ends[is_second ? 0 : 1], {}};
-    for (std::size_t q = 0; q < L::kSprings; ++q) {
-      const double s = share.contact_springs[k * L::kSprings + q];
-      c.spring[q] = Dim == 3 && is_second ? -s : s;
-    }
-    loose_.push_back(c);
+    double* numbers =
+        loose_.push({is_second ? second->second : first->second, ends[is_second ? 0 : 1]});
+    for (int c = 0; c < form.length; ++c)
+      numbers[c] =
+          form.sign(c, is_second) * share.contact_springs[k * length + static_cast<std::size_t>(c)];
   }
   old_walls_.clear();
   for (std::size_t k = 0; k < share.wall_contact_ids.size(); ++k) {
@@ -156,7 +157,7 @@ void Lane<Dim>::queue_links(const CheckpointShare& share,
     WallContact<Dim> c{row->second, share.wall_contact_walls[k], {}, {}};
     std::copy_n(share.wall_contact_images.data() + k * c.image.size(), c.image.size(),
                 c.image.begin());
-    std::copy_n(share.wall_contact_springs.data() + k * L::kSprings, int{L::kSprings}, c.spring);
+    std::copy_n(share.wall_contact_springs.data() + k * length, length, c.history);
     old_walls_.push_back(c);
   }
   for (std::size_t k = 0; k < share.bond_laws.size(); ++k) {

@@ -33,19 +33,14 @@ void require_short_bonds(const Grid<Dim>& grid, const ParticleStore<Dim>& store,
 
 }  // namespace
 
-// Packed springs are taken from where they are: these lists have served.
+// Packed histories are taken from where they are: these lists have served.
 template <int Dim>
 void Lane<Dim>::collect_history(std::array<Migration<Dim>, 2>& leaving,
                                 std::span<const std::int32_t> number) {
-  kept_.clear();
+  kept_.clear(history_form().length);
   for (const Block& block : blocks_) keep_staying(block, leaving, number);
   imbalance_.contacts -= static_cast<std::int64_t>(kept_.size());
-  if (kept_.capacity() > kept_.size() + kept_.size() / 8 + 2 * kBlockPairs) {
-    std::vector<KeptContact> fitting;
-    fitting.reserve(kept_.size() + kept_.size() / 16 + kBlockPairs);
-    fitting.assign(kept_.begin(), kept_.end());
-    kept_.swap(fitting);
-  }
+  kept_.trim(kBlockPairs);
   for (const Side side : {Left, Right}) {
     const PairList& list = bands_[side].across;
     for (const PairBlock& block : bands_[side].blocks) {
@@ -56,7 +51,7 @@ void Lane<Dim>::collect_history(std::array<Migration<Dim>, 2>& leaving,
   }
 }
 
-/// Pairs of two that stay are the rule, and nobody can foretell which near pairs have a spring.
+/// Pairs of two that stay are the rule, and nobody can foretell which near pairs have a history.
 template <int Dim>
 void Lane<Dim>::keep_staying(const PairBlock& block, std::array<Migration<Dim>, 2>& leaving,
                              std::span<const std::int32_t> number) {
@@ -65,11 +60,14 @@ void Lane<Dim>::keep_staying(const PairBlock& block, std::array<Migration<Dim>, 
   };
   std::size_t count = kept_.size();
   kept_.resize(count + static_cast<std::size_t>(block.num_worked_on()));
-  block.for_each_worked_on(pairs_, [&](std::size_t at, std::int32_t i, std::int32_t j) {
-    const auto k = static_cast<std::int64_t>(at);
-    if (!stays(i) || !stays(j)) return loosen(pairs_, k, {i, j}, true, leaving, number);
-    keep(kept_[count], pairs_, k, i, j);
-    count += pairs_.template has_spring<Dim>(k) ? 1 : 0;
+  with_length<Dim>(kept_.length, [&](auto length) {
+    block.for_each_worked_on(pairs_, [&](std::size_t at, std::int32_t i, std::int32_t j) {
+      const auto k = static_cast<std::int64_t>(at);
+      if (!stays(i) || !stays(j)) return loosen(pairs_, k, {i, j}, true, leaving, number);
+      kept_.rows[count] = {i, j};
+      keep(kept_, count, pairs_, k, length);
+      count += pairs_.has_history(k, length) ? 1 : 0;
+    });
   });
   kept_.resize(count);
 }
@@ -78,23 +76,18 @@ template <int Dim>
 void Lane<Dim>::loosen(const PairList& list, std::int64_t k, std::array<std::int32_t, 2> ends,
                        bool counts, std::array<Migration<Dim>, 2>& leaving,
                        std::span<const std::int32_t> number) {
-  if (!list.template has_spring<Dim>(k) || is_removed(ends[0]) || is_removed(ends[1])) return;
+  if (!list.has_history(k) || is_removed(ends[0]) || is_removed(ends[1])) return;
   if (counts) --imbalance_.contacts;
   for (std::size_t e = 0; e < 2; ++e) {
     if (!store_.is_owned(ends[e])) continue;
     const auto own = static_cast<std::size_t>(ends[e]);
     if (goes_[own] == kGone) continue;
-    LooseContact<Dim> c{ends[e], store_.id[static_cast<std::size_t>(ends[1 - e])], {}};
-    for (int q = 0; q < L::kSprings; ++q) {
-      const double s = list.template springs<Dim>(k)[q * kBatch];
-      c.spring[q] = Dim == 3 && e == 1 ? -s : s;
-    }
-    if (goes_[own] == 0) {
-      loose_.push_back(c);
-    } else {
-      c.handle = number[own];
-      leaving[static_cast<std::size_t>(goes_[own] - 1)].contacts.push_back(c);
-    }
+    const bool leaves = goes_[own] != 0;
+    auto& to = leaves ? leaving[static_cast<std::size_t>(goes_[own] - 1)].contacts : loose_;
+    double* numbers =
+        to.push({leaves ? number[own] : ends[e], store_.id[static_cast<std::size_t>(ends[1 - e])]});
+    for (int c = 0; c < to.length; ++c)
+      numbers[c] = history_form().sign(c, e == 1) * list.history_of(k)[c * kBatch];
   }
 }
 
@@ -156,23 +149,23 @@ std::int32_t Lane<Dim>::find_near(std::int32_t row, std::int64_t id) const {
 
 /// @return whether they are candidates: if not, they are out of touch
 template <int Dim>
-bool Lane<Dim>::place(std::int32_t a, std::int32_t b, const double* spring) {
+bool Lane<Dim>::place(std::int32_t a, std::int32_t b, const double* history) {
   const Slot at = slot(a, b);
   if (at.list == nullptr) return false;
   if (at.list == &bands_[Right].across && bands_[Right].returns)
     return true;  // kept by the right-hand side
   // What comes from both sides, and what the lane right of a cut counts, is not counted again.
-  const bool counts = at.list != &bands_[Right].across && !at.list->template has_spring<Dim>(at.k);
+  const bool counts = at.list != &bands_[Right].across && !at.list->has_history(at.k);
   if (counts) ++imbalance_.contacts;
-  put(at, at.list->i[static_cast<std::size_t>(at.k)] != a, spring);
+  put(at, at.list->i[static_cast<std::size_t>(at.k)] != a, history);
   return true;
 }
 
 template <int Dim>
-void Lane<Dim>::put(const Slot& at, bool is_swapped, const double* spring) {
-  const double sign = Dim == 3 && is_swapped ? -1.0 : 1.0;
-  for (int c = 0; c < L::kSprings; ++c)
-    at.list->template springs<Dim>(at.k)[c * kBatch] = sign * spring[c];
+void Lane<Dim>::put(const Slot& at, bool is_swapped, const double* history) const {
+  const History& form = history_form();
+  for (int c = 0; c < form.length; ++c)
+    at.list->history_of(at.k)[c * kBatch] = form.sign(c, is_swapped) * history[c];
 }
 
 template <int Dim>
@@ -182,24 +175,25 @@ void Lane<Dim>::restore_history() {
     const double reach = store_.radius(a) + store_.radius(b);
     return distance2<Dim>(world_->grid.box(), store_.x(a), store_.x(b)) < reach * reach;
   };
-  for (const KeptContact& c : kept_) {
+  for (std::size_t k = 0; k < kept_.size(); ++k) {
     if (loses(Loss::Contact)) continue;
-    const std::int32_t a = new_row_[static_cast<std::size_t>(c.i)],
-                       b = new_row_[static_cast<std::size_t>(c.j)];
+    const std::int32_t a = new_row_[static_cast<std::size_t>(kept_.rows[k][0])],
+                       b = new_row_[static_cast<std::size_t>(kept_.rows[k][1])];
     const Slot at = owned_slot(std::min(a, b), std::max(a, b));
-    if (at.list != nullptr) put(at, a > b, c.spring);
+    if (at.list != nullptr) put(at, a > b, kept_.history(k));
     if (at.list != nullptr || !touch(a, b)) ++imbalance_.contacts;
   }
-  kept_.clear();
-  for (const LooseContact<Dim>& c : loose_) {
+  kept_.clear(kept_.length);
+  for (std::size_t k = 0; k < loose_.size(); ++k) {
+    const LooseContact& c = loose_.rows[k];
     const std::int32_t row = new_row_[static_cast<std::size_t>(c.handle)];
     const std::int32_t partner = find_near(row, c.partner);
     // Of two that parted, both ends come here; the lower id counts.
-    if ((partner < 0 || (!place(row, partner, c.spring) && !touch(row, partner))) &&
+    if ((partner < 0 || (!place(row, partner, loose_.history(k)) && !touch(row, partner))) &&
         store_.id[static_cast<std::size_t>(row)] < c.partner)
       ++imbalance_.contacts;
   }
-  loose_.clear();
+  loose_.clear(loose_.length);
   bonds_.resolve(store_);
   require_short_bonds(world_->grid, store_, bonds_);
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.bonds().size()); ++b)
@@ -237,8 +231,8 @@ void Lane<Dim>::restore_wall_history() {
   for (const WallContact<Dim>& old : old_walls_) {
     while (now != walls_.list().end() && key_of(*now) < key_of(old)) ++now;
     const bool is_listed = now != walls_.list().end() && key_of(*now) == key_of(old);
-    if (!has_spring(old) || (is_listed ? loses(Loss::WallContact) : touches(old))) continue;
-    if (is_listed) std::copy_n(old.spring, int{L::kSprings}, now->spring);
+    if (!has_history(old) || (is_listed ? loses(Loss::WallContact) : touches(old))) continue;
+    if (is_listed) std::copy_n(old.history, int{kLongestHistory<Dim>}, now->history);
     ++imbalance_.wall_contacts;
   }
   old_walls_.clear();

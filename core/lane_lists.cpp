@@ -53,7 +53,7 @@ void Lane<Dim>::find_owned() {
       .owned(cells_, {0, n}, pairs_, row_begin_);
   pairs_.pad(store_.waste());
   pairs_.trim();
-  pairs_.template reset_springs<Dim>();
+  pairs_.reset_history(history_form().length);
   cut_blocks();
 }
 
@@ -117,7 +117,7 @@ void Lane<Dim>::list_across(Side side) {
       .across(own, band.ghost_cells, side == Left ? -1 : 1, band.across);
   band.across.pad(store_.waste());
   band.across.trim();
-  band.across.template reset_springs<Dim>();
+  band.across.reset_history(history_form().length);
   if (packs()) band.across.prepare_packing();
   band.travel = 0.0;
   band.blocks = blocks_of(band.across);
@@ -126,42 +126,43 @@ void Lane<Dim>::list_across(Side side) {
 template <int Dim>
 void Lane<Dim>::research_owned() {
   const Stopwatch watch(search_seconds_.chunks);
-  kept_.clear();
-  keep_springs(pairs_, kept_);
+  keep_histories(pairs_, kept_);
   find_owned();
   cut_chunks(std::int64_t{1} << 60);
-  put_springs(pairs_, kept_);
+  put_histories(pairs_, kept_);
 }
 
 template <int Dim>
 void Lane<Dim>::research_across(Side side) {
   const Stopwatch watch(search_seconds_.bands);
   PairList& list = bands_[side].across;
-  std::vector<KeptContact> before;  // of its own: the other band may be at it too
-  keep_springs(list, before);
+  KeptContacts before;  // of its own: the other band may be at it too
+  keep_histories(list, before);
   list_across(side);
-  put_springs(list, before);
+  put_histories(list, before);
 }
 
 template <int Dim>
-void Lane<Dim>::keep_springs(const PairList& list, std::vector<KeptContact>& to) {
+void Lane<Dim>::keep_histories(const PairList& list, KeptContacts& to) {
+  to.clear(list.history_length);
   for (std::int64_t k = 0; k < list.size(); ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    if (list.template has_spring<Dim>(k)) keep(to.emplace_back(), list, k, list.i[at], list.j[at]);
+    if (!list.has_history(k)) continue;
+    const auto pair = static_cast<std::size_t>(k);
+    to.push({list.i[pair], list.j[pair]});
+    keep(to, to.size() - 1, list, k, list.history_length);
   }
 }
 
 template <int Dim>
-void Lane<Dim>::put_springs(PairList& list, std::span<const KeptContact> kept) const {
-  for (std::int64_t k = 0; k < list.size() && !kept.empty(); ++k) {
-    const auto at = static_cast<std::size_t>(k);
-    if (list.i[at] == store_.waste()) break;  // padding
-    const std::pair here(list.i[at], list.j[at]);
-    const auto of_front = [&] { return std::pair(kept.front().i, kept.front().j); };
-    while (!kept.empty() && of_front() < here) kept = kept.subspan(1);
-    if (kept.empty() || of_front() != here) continue;
-    for (int c = 0; c < L::kSprings; ++c)
-      list.template springs<Dim>(k)[c * kBatch] = kept.front().spring[c];
+void Lane<Dim>::put_histories(PairList& list, const KeptContacts& kept) const {
+  std::size_t at = 0;
+  for (std::int64_t k = 0; k < list.size() && at < kept.size(); ++k) {
+    const auto pair = static_cast<std::size_t>(k);
+    if (list.i[pair] == store_.waste()) break;  // padding
+    const std::array here{list.i[pair], list.j[pair]};
+    while (at < kept.size() && kept.rows[at] < here) ++at;
+    if (at == kept.size() || kept.rows[at] != here) continue;
+    for (int c = 0; c < kept.length; ++c) list.history_of(k)[c * kBatch] = kept.history(at)[c];
   }
 }
 
@@ -175,8 +176,7 @@ std::int64_t Lane<Dim>::num_pairs() const {
 template <int Dim>
 std::size_t Lane<Dim>::bytes() const {
   std::size_t total = store_.bytes() + pairs_.bytes() + bonds_.bytes() + planes_.bytes() +
-                      kept_.capacity() * sizeof(KeptContact) +
-                      loose_.capacity() * sizeof(LooseContact<Dim>) + 8 * row_begin_.capacity() +
+                      kept_.bytes() + loose_.bytes() + 8 * row_begin_.capacity() +
                       4 * (cells_.start.capacity() + new_row_.capacity()) +
                       blocks_.capacity() * sizeof(Block) + walls_.bytes();
   for (const Band& band : bands_) total += band.across.bytes() + band.planes.bytes();

@@ -46,7 +46,8 @@ template <int Dim>
 void measure_pairs(const Lane<Dim>& lane, const PairList& list, Measures& m) {
   const auto& store = lane.store();
   const PeriodicBox& box = lane.world().grid.box();
-  const LawView laws = lane.world().laws.view();
+  const LawTable& laws = lane.world().laws;
+  const ContactLawIn<Dim>& law = laws.law().template in<Dim>();
   for (std::int64_t k = 0; k < list.size(); ++k) {
     const auto at = static_cast<std::size_t>(k);
     if (list.code[at] == LawTable::kBonded) continue;
@@ -55,11 +56,10 @@ void measure_pairs(const Lane<Dim>& lane, const PairList& list, Measures& m) {
     const double reach = store.radius(i) + store.radius(j);
     if (d2 >= reach * reach) continue;
     const double overlap = reach - std::sqrt(d2);
-    const double* law = laws.rows + LawView::kRow * list.code[at];
-    const double* s = list.template springs<Dim>(k);
-    double s2 = 0.0;
-    for (int c = 0; c < Layout<Dim>::kSprings; ++c) s2 += s[c * kBatch] * s[c * kBatch];
-    m.elastic.add(0.5 * (law[LawView::Kn] * overlap * overlap + law[LawView::Kt] * s2));
+    const double* numbers = list.history_of(k);
+    double history[kMostHistory];
+    for (int c = 0; c < law.history.length; ++c) history[c] = numbers[c * kBatch];
+    m.elastic.add(law.energy(laws.row(list.code[at]), overlap, history));
     m.max_overlap = std::max(m.max_overlap, overlap);
     m.max_overlap_share =
         std::max(m.max_overlap_share, overlap / std::min(store.radius(i), store.radius(j)));
@@ -79,13 +79,9 @@ void measure_wall_contacts(const Lane<Dim>& lane, Measures& m) {
         store.radius(c.row) -
         world.wall_shapes[w].foot(world.walls[w].point, c.image, store.x(c.row)).distance;
     if (overlap <= 0.0 || !lane.wall_contacts().is_felt(store, world.wall_view(), k)) continue;
-    const double* law =
-        world.laws.view().rows +
-        LawView::kRow * world.laws.code(world.wall_specs[w].material,
-                                        store.type[static_cast<std::size_t>(c.row)]);
-    double s2 = 0.0;
-    for (const double s : c.spring) s2 += s * s;
-    m.elastic.add(0.5 * (law[LawView::Kn] * overlap * overlap + law[LawView::Kt] * s2));
+    const double* row = world.laws.row(
+        world.laws.code(world.wall_specs[w].material, store.type[static_cast<std::size_t>(c.row)]));
+    m.elastic.add(world.laws.law().template in<Dim>().energy(row, overlap, c.history));
     m.max_overlap = std::max(m.max_overlap, overlap);
     m.max_overlap_share = std::max(m.max_overlap_share, overlap / store.radius(c.row));
   }

@@ -43,7 +43,9 @@ void check(const RowRecord<Dim>& p, const World<Dim>& world) {
 template <int Dim>
 void check_links(const Migration<Dim>& m, const World<Dim>& world) {
   const std::size_t n = m.particles.size();
-  for (const auto& c : m.contacts) {
+  if (m.contacts.numbers.size() != m.contacts.size() * static_cast<std::size_t>(m.contacts.length))
+    refuse("contacts with histories of another length");
+  for (const auto& c : m.contacts.rows) {
     if (!is_below(c.handle, n)) refuse("a contact of a particle that is not in it");
   }
   for (const auto& w : m.walls) {
@@ -68,7 +70,8 @@ void encode(const Migration<Dim>& migration, std::vector<std::byte>& message) {
   message.clear();
   ByteWriter out(message);
   out.put_counted(migration.particles);
-  out.put_counted(migration.contacts);
+  out.put_counted(migration.contacts.rows);
+  out.put_counted(migration.contacts.numbers);
   out.put_counted(migration.walls);
   out.put_counted(migration.bonds);
 }
@@ -79,7 +82,9 @@ Migration<Dim> decode_migration(std::span<const std::byte> message, const World<
   Migration<Dim> m;
   ByteReader in(message);
   m.particles = in.take_counted<RowRecord<Dim>>();
-  m.contacts = in.take_counted<LooseContact<Dim>>();
+  m.contacts.length = world.laws.law().template in<Dim>().history.length;
+  m.contacts.rows = in.take_counted<LooseContact>();
+  m.contacts.numbers = in.take_counted<double>();
   m.walls = in.take_counted<WallRecord<Dim>>();
   m.bonds = in.take_counted<BondRecord<Dim>>();
   in.finish();

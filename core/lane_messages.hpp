@@ -6,6 +6,8 @@
 #include <vector>
 
 #include <barchan/core/bonds.hpp>
+#include <barchan/core/laws/history_table.hpp>
+#include <barchan/core/laws/laws.hpp>
 #include <barchan/core/layout.hpp>
 #include <barchan/core/row_record.hpp>
 #include <barchan/core/wall_shape.hpp>
@@ -18,20 +20,17 @@ namespace barchan {
 template <int Dim>
 struct World;
 
-/// A contact's spring on its way from old lists to new ones; oriented from the handle to the
-/// partner.
-template <int Dim>
+/// A contact on its way from old lists to new ones; its history as seen from the handle.
 struct LooseContact {
   std::int32_t handle = 0;  ///< row: before order() a source row, in messages the migrant's number
   std::int64_t partner = 0;
-  double spring[Layout<Dim>::kSprings] = {};
 };
 
 template <int Dim>
 struct WallRecord {
   std::int32_t number, wall;
   WallImage image;
-  double spring[Layout<Dim>::kSprings];
+  double history[kLongestHistory<Dim>];
 };
 
 template <int Dim>
@@ -45,7 +44,7 @@ struct BondRecord {
 template <int Dim>
 struct Migration {
   std::vector<RowRecord<Dim>> particles;
-  std::vector<LooseContact<Dim>> contacts;
+  HistoryTable<LooseContact> contacts;
   std::vector<WallRecord<Dim>> walls;
   std::vector<BondRecord<Dim>> bonds;
 };

@@ -58,7 +58,7 @@ void prefetch_front(const PairList& list, const PairBlock& block) {
   prefetch_values(list.packed_i.data() + k, count);
   prefetch_values(list.packed_j.data() + k, count);
   prefetch_values(list.packed_code.data() + k, count);
-  prefetch_values(list.spring.data() + k * Layout<Dim>::kSprings, count * Layout<Dim>::kSprings);
+  prefetch_values(list.history.data() + k * list.history_length, count * list.history_length);
 }
 
 }  // namespace

@@ -53,6 +53,7 @@ void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byt
   goes_.assign(static_cast<std::size_t>(n), 0);
   std::vector<std::int32_t> number(static_cast<std::size_t>(n), 0);
   std::array<Migration<Dim>, 2> out;
+  for (Migration<Dim>& m : out) m.contacts.length = history_form().length;
   for (std::int32_t i = 0; i < n; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const std::int64_t key_before = std::exchange(store_.key[at], world_->grid.key(store_.x(i)));
@@ -64,19 +65,19 @@ void Lane<Dim>::begin_rebuild(int slab_begin, int slab_end, std::vector<std::byt
     leavers.emplace_back().take(store_, i);
   }
 
-  loose_.clear();
+  loose_.clear(history_form().length);
   collect_history(out, number);
   old_walls_.clear();
   for (const WallContact<Dim>& c : walls_.list()) {
     const auto at = static_cast<std::size_t>(c.row);
     if (goes_[at] == kGone) continue;
-    if (has_spring(c)) --imbalance_.wall_contacts;
+    if (has_history(c)) --imbalance_.wall_contacts;
     if (goes_[at] == 0) {
       old_walls_.push_back(c);
       continue;
     }
     WallRecord<Dim> w{number[at], c.wall, c.image, {}};
-    std::copy_n(c.spring, int{L::kSprings}, w.spring);
+    std::copy_n(c.history, int{kLongestHistory<Dim>}, w.history);
     out[static_cast<std::size_t>(goes_[at] - 1)].walls.push_back(w);
   }
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.bonds().size()); ++b) {
@@ -107,13 +108,13 @@ void Lane<Dim>::absorb(std::span<const std::byte> message) {
   goes_.resize(static_cast<std::size_t>(end), 0);
   for (std::size_t p = 0; p < particles.size(); ++p)
     particles[p].put(store_, first + static_cast<std::int32_t>(p));
-  for (LooseContact<Dim>& c : contacts) {
-    c.handle += first;
-    loose_.push_back(c);
+  for (std::size_t k = 0; k < contacts.size(); ++k) {
+    const LooseContact& c = contacts.rows[k];
+    std::copy_n(contacts.history(k), contacts.length, loose_.push({first + c.handle, c.partner}));
   }
   for (const auto& w : walls) {
     WallContact<Dim> c{first + w.number, w.wall, w.image, {}};
-    std::copy_n(w.spring, int{L::kSprings}, c.spring);
+    std::copy_n(w.history, int{kLongestHistory<Dim>}, c.history);
     old_walls_.push_back(c);
   }
   for (const auto& b : bonds) bonds_.add(b.bond, b.is_current != 0);

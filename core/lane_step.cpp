@@ -31,7 +31,7 @@ PairJob Lane<Dim>::job(PairList& list) const {
   job.i = list.i.data();
   job.j = list.j.data();
   job.code = list.code.data();
-  job.spring = list.spring.data();
+  job.history = list.history.data();
   job.begin = 0;
   job.end = list.size();
   job.dt = spring_step(frame_, world_->dt);

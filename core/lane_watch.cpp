@@ -69,15 +69,14 @@ LinkCounts Lane<Dim>::remove(std::span<const std::int64_t> ids) {
   const auto count = [&](const PairList& list) {
     for (std::int64_t k = 0; k < list.size(); ++k) {
       const auto at = static_cast<std::size_t>(k);
-      const bool goes =
-          list.template has_spring<Dim>(k) && (is_removed(list.i[at]) || is_removed(list.j[at]));
+      const bool goes = list.has_history(k) && (is_removed(list.i[at]) || is_removed(list.j[at]));
       gone.contacts += goes ? 1 : 0;
     }
   };
   count(pairs_);
   if (bands_[Left].exists) count(bands_[Left].across);
   for (const WallContact<Dim>& c : walls_.list())
-    gone.wall_contacts += has_spring(c) && is_removed(c.row) ? 1 : 0;
+    gone.wall_contacts += has_history(c) && is_removed(c.row) ? 1 : 0;
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.bonds().size()); ++b) {
     if (!is_removed(bonds_.end_a(b)) && !is_removed(bonds_.end_b(b))) continue;
     gone.bonds += counts_bond(b) ? 1 : 0;

@@ -27,7 +27,6 @@ struct Layout<2> {
   static constexpr int kSpin =
       0;  ///< doubles per spin record: the surface speed is in the motion record
   static constexpr int kForce = 4, kTorque = 2;
-  static constexpr int kSprings = 1;        ///< tangential spring components per contact
   static constexpr int kDensity = 3;        ///< beside the surface speed
   static constexpr double kSpinGain = 2.0;  ///< m r² / I of a disk
 };
@@ -37,7 +36,6 @@ struct Layout<3> {
   static constexpr int kMotion = 8, kRadius = 3, kVelocity = 4, kSurface = 0, kInverseMass = 7;
   static constexpr int kSpin = 4;
   static constexpr int kForce = 8, kTorque = 4;
-  static constexpr int kSprings = 3;
   static constexpr int kDensity = 3;
   static constexpr double kSpinGain = 2.5;  ///< m r² / I of a sphere
 };

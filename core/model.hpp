@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <barchan/core/error.hpp>
+#include <barchan/core/laws/laws.hpp>
 #include <barchan/core/source_record.hpp>
 #include <barchan/core/vec.hpp>
 
@@ -29,26 +30,6 @@ struct Domain {
   SourcePlace place{};  ///< in the deck, if it comes from one
 };
 
-/// One dashpot: coefficient = constant + rate·m_eff + critical·sqrt(m_eff).
-/// A deck gives `cn` (constant [N·s/m]), a mass-proportional rate [1/s], or a restitution, which
-/// becomes the `critical` factor 2·zeta·sqrt(kn); restitution.hpp has its zeta.
-struct Dashpot {
-  double constant = 0.0;  ///< [N·s/m]
-  double rate = 0.0;      ///< [1/s]
-  double critical = 0.0;  ///< [sqrt(N/m)]
-};
-
-/// Constants of the linear spring–dashpot law for one pair of materials.
-struct ContactConstants {
-  double kn = 0.0;  ///< normal stiffness [N/m]
-  double kt = 0.0;  ///< tangential stiffness [N/m]
-  Dashpot cn;
-  Dashpot ct;
-  double mu = 0.0;                    ///< Coulomb friction
-  std::optional<double> restitution;  ///< where cn.critical comes from one; kernels read cn alone
-  bool is_mixed = false;              ///< from the constants of two materials
-};
-
 struct Material {
   std::string name;
   double density = 0.0;  ///< [kg/m³]; in 2D areal, [kg/m²] for unit thickness
@@ -59,6 +40,7 @@ struct ContactTable {
   int num_materials = 0;
   std::vector<ContactConstants> constants;
   bool no_tension = true;  ///< clamp the normal force at zero while particles part
+  int law = 0;             ///< place in the list of laws
 
   [[nodiscard]] const ContactConstants& at(int a, int b) const {
     return constants[static_cast<std::size_t>(a) * static_cast<std::size_t>(num_materials) +

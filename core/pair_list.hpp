@@ -16,7 +16,8 @@ inline constexpr std::int64_t kBlockPairs = 32 * kBatch;
 struct PairList {
   AlignedVector<std::int32_t> i, j;  ///< rows of each pair
   AlignedVector<std::uint8_t> code;  ///< law of each pair
-  AlignedVector<double> spring;      ///< per batch of eight: component by component
+  AlignedVector<double> history;     ///< per batch of eight: number by number
+  int history_length = 0;            ///< numbers per pair (laws/history.hpp)
 
   // Pairs of each block that touch or nearly do, packed to its front (lane_touching.cpp); empty
   // where every candidate is worked on.
@@ -67,32 +68,33 @@ struct PairList {
     fit(j);
     fit(code);
   }
-  template <int Dim>
-  void reset_springs() {
-    resize_with_room(spring, i.size() * Layout<Dim>::kSprings);
-    std::fill(spring.begin(), spring.end(), 0.0);
+  void reset_history(int length) {
+    history_length = length;
+    resize_with_room(history, i.size() * static_cast<std::size_t>(length));
+    std::fill(history.begin(), history.end(), 0.0);
   }
-  template <int Dim>
-  [[nodiscard]] double* springs(std::int64_t k) {  ///< component c at [c·kBatch]
-    return spring.data() + (k / kBatch) * kBatch * Layout<Dim>::kSprings + k % kBatch;
+  [[nodiscard]] double* history_of(std::int64_t k) {  ///< number c at [c·kBatch]
+    return history.data() + k / kBatch * kBatch * history_length + k % kBatch;
   }
-  template <int Dim>
-  [[nodiscard]] const double* springs(std::int64_t k) const {
-    return const_cast<PairList*>(this)->springs<Dim>(k);
+  [[nodiscard]] const double* history_of(std::int64_t k) const {
+    return const_cast<PairList*>(this)->history_of(k);
   }
-  template <int Dim>
-  [[nodiscard]] double* springs_of_block(std::int64_t begin) {
-    return spring.data() + begin * Layout<Dim>::kSprings;
+  [[nodiscard]] double* history_of_block(std::int64_t begin) {
+    return history.data() + begin * history_length;
   }
-  template <int Dim>
-  [[nodiscard]] bool has_spring(std::int64_t k) const {
-    const double* s = springs<Dim>(k);
-    if constexpr (Dim == 2) return s[0] != 0.0;
-    return ((s[0] != 0.0) | (s[kBatch] != 0.0) | (s[2 * kBatch] != 0.0)) != 0;
+  /// Some number is not zero: the contact is kept.
+  [[nodiscard]] bool has_history(std::int64_t k) const { return has_history(k, history_length); }
+  /// @param length  the same, known when it is compiled
+  template <class Length>
+  [[nodiscard]] bool has_history(std::int64_t k, Length length) const {
+    const double* numbers = history.data() + k / kBatch * kBatch * length + k % kBatch;
+    bool has_any = false;
+    for (int c = 0; c < length; ++c) has_any = has_any | (numbers[c * kBatch] != 0.0);
+    return has_any;
   }
   [[nodiscard]] std::size_t bytes() const {
     return 4 * (i.capacity() + j.capacity() + packed_i.capacity() + packed_j.capacity()) +
-           code.capacity() + packed_code.capacity() + mask.capacity() + 8 * spring.capacity();
+           code.capacity() + packed_code.capacity() + mask.capacity() + 8 * history.capacity();
   }
 };
 

@@ -95,7 +95,7 @@ Suspect suspect_of(const ParticleStore<Dim>& store, std::int32_t row) {
 
 template <int Dim>
 double PassageWatch<Dim>::stiffness(std::uint8_t code) const {
-  return world_.laws.view().rows[LawView::kRow * code + LawView::Kn];
+  return world_.laws.law().stiffness(world_.laws.row(code));
 }
 
 template <int Dim>

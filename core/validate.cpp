@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -61,9 +62,23 @@ void check_domain(const Model& model) {
           "axes count from 0");
 }
 
-void check_dashpot(const std::string& key, const Dashpot& dashpot) {
-  for (const double value : {dashpot.constant, dashpot.rate, dashpot.critical})
-    not_negative(key, value);
+/// The constants of two materials, given in either order.
+void check_pair(const Model& model, std::size_t a, std::size_t b, const std::string& key) {
+  const std::size_t n = model.materials.size();
+  const auto& constants = model.contacts.constants;
+  with_law(model.contacts.law, [&]<class Law>(Law /*law*/) {
+    const typename Law::Pair &pair = constants[a * n + b], &mirror = constants[b * n + a];
+    std::vector<double> there, back;
+    Law::for_each_number(pair, [&](const char* of, double value) {
+      not_negative(key + of, value);
+      there.push_back(value);
+    });
+    Law::for_each_number(mirror, [&](const char* /*of*/, double value) { back.push_back(value); });
+    require(there == back, key + "name",
+            fmt::format("contacts of materials {} and {} differ from those of {} and {}", a + 1,
+                        b + 1, b + 1, a + 1),
+            "ContactTable is symmetric");
+  });
 }
 
 void check_contacts(const Model& model) {
@@ -75,22 +90,13 @@ void check_contacts(const Model& model) {
           fmt::format("contacts of {} materials with {} entries for {} materials",
                       table.num_materials, table.constants.size(), n),
           "ContactTable has num_materials² entries");
+  require(table.law >= 0 && table.law < Laws::kSize, "contact",
+          fmt::format("contacts by law number {}", table.law),
+          fmt::format("there are {}, which count from 0", Laws::kSize));
   for (std::size_t a = 0; a < n; ++a) {
     const std::string key = fmt::format("material.{}.", a + 1);
     positive(key + "density", model.materials[a].density);
-    for (std::size_t b = 0; b < n; ++b) {
-      const ContactConstants& c = table.constants[a * n + b];
-      const ContactConstants& mirror = table.constants[b * n + a];
-      not_negative(key + "normal_stiffness", c.kn);
-      not_negative(key + "tangential_stiffness", c.kt);
-      not_negative(key + "friction", c.mu);
-      check_dashpot(key + "normal_damping", c.cn);
-      check_dashpot(key + "tangential_damping", c.ct);
-      require(c.kn == mirror.kn && c.kt == mirror.kt && c.mu == mirror.mu, key + "name",
-              fmt::format("contacts of materials {} and {} differ from those of {} and {}", a + 1,
-                          b + 1, b + 1, a + 1),
-              "ContactTable is symmetric");
-    }
+    for (std::size_t b = 0; b < n; ++b) check_pair(model, a, b, key);
   }
 }
 

@@ -8,13 +8,6 @@ namespace {
 
 using S = simd::Scalar;
 
-LawConstants<S> constants_of(const LawTable& laws, std::uint8_t code) {
-  const double* r = laws.view().rows + LawView::kRow * code;
-  return {r[LawView::Kn],     r[LawView::Kt],         r[LawView::InverseKt], r[LawView::Mu],
-          r[LawView::Cap],    r[LawView::Cn],         r[LawView::Ct],        r[LawView::CnRate],
-          r[LawView::CtRate], r[LawView::CnCritical], r[LawView::CtCritical]};
-}
-
 /// Of the radius: walls that are as near as this meet.
 constexpr double kMeets = 0x1p-20;
 
@@ -63,26 +56,6 @@ void add_to_row(ParticleStore<Dim>& store, std::int32_t i, const PairForce<S, Di
     row[2] += f.fz;
     row[4] += f.tx, row[5] += f.ty, row[6] += f.tz;
   }
-}
-
-template <int Dim, Damping D>
-PairForce<S, Dim> force_of(const LawConstants<S>& c, const PairState<S, Dim>& pair, double dt,
-                           double (&spring)[Layout<Dim>::kSprings]) {
-  PairForce<S, Dim> f{};
-  if constexpr (Dim == 2)
-    respond<S, D>(c, pair, dt, spring[0], f);
-  else
-    respond<S, D>(c, pair, dt, spring, f);
-  return f;
-}
-
-template <int Dim>
-PairForce<S, Dim> respond_as(Damping damping, const LawConstants<S>& c,
-                             const PairState<S, Dim>& pair, double dt,
-                             double (&spring)[Layout<Dim>::kSprings]) {
-  if (damping == Damping::Constant) return force_of<Dim, Damping::Constant>(c, pair, dt, spring);
-  if (damping == Damping::Rate) return force_of<Dim, Damping::Rate>(c, pair, dt, spring);
-  return force_of<Dim, Damping::Critical>(c, pair, dt, spring);
 }
 
 }  // namespace
@@ -174,15 +147,18 @@ typename WallContacts<Dim>::Push WallContacts<Dim>::push(const ParticleStore<Dim
   const WallState& state = frame.walls.states[w];
   const WallFoot foot = foot_of(store, frame.walls, contact);
   if (const auto* other = felt_instead(store, frame.walls, place, foot)) {
-    std::copy(std::begin(other->spring), std::end(other->spring), contact.spring);
+    std::copy(std::begin(other->history), std::end(other->history), contact.history);
     return {{}, Vec3::Zero()};
   }
   Approach to = approach_of(foot, spec.normal, store.radius(contact.row));
   to.inverse_mass = store.inverse_mass(contact.row) + (spec.is_loaded ? 1.0 / spec.mass : 0.0);
   const auto pair = pair_with_wall(store, contact.row, to, state.velocity);
   const auto type = store.type[static_cast<std::size_t>(contact.row)];
-  const auto law = constants_of(*frame.laws, frame.laws->code(spec.material, type));
-  Push p{respond_as(frame.laws->damping(), law, pair, frame.dt, contact.spring), Vec3::Zero()};
+  const LawTable& laws = *frame.laws;
+  Push p{
+      laws.law().template in<Dim>().respond(laws.level(), laws.row(laws.code(spec.material, type)),
+                                            pair, frame.dt, contact.history),
+      Vec3::Zero()};
   p.on_wall[0] = -p.on_particle.fx;
   p.on_wall[1] = -p.on_particle.fy;
   if constexpr (Dim == 3) p.on_wall[2] = -p.on_particle.fz;

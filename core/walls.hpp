@@ -7,10 +7,10 @@
 #include <tuple>
 #include <vector>
 
-#include <barchan/core/contact_law.hpp>
 #include <barchan/core/exact_sum.hpp>
 #include <barchan/core/grid.hpp>
 #include <barchan/core/law_table.hpp>
+#include <barchan/core/laws/contact.hpp>
 #include <barchan/core/model.hpp>
 #include <barchan/core/particle_store.hpp>
 #include <barchan/core/rows.hpp>
@@ -36,13 +36,13 @@ struct WallSums {
   void add(const WallSums& other);
 };
 
-/// A particle near an image of a wall, with the tangential spring of their contact.
+/// A particle near an image of a wall, with the history of their contact.
 template <int Dim>
 struct WallContact {
   std::int32_t row = 0;
   std::int32_t wall = 0;
   WallImage image{};
-  double spring[Layout<Dim>::kSprings] = {};
+  double history[kLongestHistory<Dim>] = {};
 };
 
 /// What the order of a list goes by, and what finds a contact again after a rebuild.
@@ -52,9 +52,9 @@ template <int Dim>
 }
 
 template <int Dim>
-[[nodiscard]] bool has_spring(const WallContact<Dim>& contact) {
-  return std::any_of(std::begin(contact.spring), std::end(contact.spring),
-                     [](double s) { return s != 0.0; });
+[[nodiscard]] bool has_history(const WallContact<Dim>& contact) {
+  return std::any_of(std::begin(contact.history), std::end(contact.history),
+                     [](double number) { return number != 0.0; });
 }
 
 /// The walls of a run, as they are now.
@@ -75,8 +75,8 @@ struct WallView {
 ///     ───┴──+───────         ───┴──+         of two plates that meet at + this particle feels the
 ///                                   ╲        left one alone
 ///
-/// The contact that is not felt keeps the spring of the one that is, so that a particle takes its
-/// spring over the joint.
+/// The contact that is not felt keeps the history of the one that is, so that a particle takes it
+/// over the joint.
 ///
 /// The force of a step k on a loaded plate moves the plate in that step. So its contacts come first
 /// (`press`), and while the sum over all ranks is on its way, all rows take up what was kept:
@@ -118,7 +118,7 @@ class WallContacts {
   /// @param sums  one a wall; the work of walls with a given velocity is added up
   void add_to_rows(ParticleStore<Dim>& store, const Frame& frame, std::span<WallSums> sums,
                    std::int32_t begin, std::int32_t end);
-  /// Force and torque on all walls as the next step will find them; changes no spring.
+  /// Force and torque on all walls as the next step will find them; changes no history.
   void measure(const ParticleStore<Dim>& store, const Frame& frame, std::span<WallSums> sums) const;
 
  private:
@@ -127,7 +127,7 @@ class WallContacts {
     Force on_particle;
     Vec3 on_wall;
   };
-  /// Of the contact at this place of the list, whose spring is stretched in `contact`.
+  /// Of the contact at this place of the list, whose history is carried on in `contact`.
   Push push(const ParticleStore<Dim>& store, const Frame& frame, std::size_t place,
             WallContact<Dim>& contact) const;
   static WallFoot foot_of(const ParticleStore<Dim>& store, const WallView<Dim>& walls,

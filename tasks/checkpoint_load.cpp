@@ -10,6 +10,7 @@
 #include <barchan/core/error.hpp>
 #include <barchan/core/exact_sum.hpp>
 #include <barchan/core/fields.hpp>
+#include <barchan/core/laws/laws.hpp>
 #include <barchan/core/layout.hpp>
 #include <barchan/core/simd/scalar.hpp>
 #include <barchan/core/wall_shape.hpp>
@@ -21,7 +22,8 @@ namespace barchan {
 namespace {
 
 ShareLimits limits_of(const Model& model) {
-  return {model.dimension, model.materials.size(), model.walls.size(), model.bond_laws.size()};
+  return {model.dimension, model.materials.size(), model.walls.size(), model.bond_laws.size(),
+          model.contacts.law};
 }
 
 template <class T>
@@ -41,22 +43,22 @@ void take_particle(const CheckpointShare& from, std::size_t p, CheckpointShare& 
 using Ids = std::unordered_set<std::int64_t>;
 
 template <int Dim>
-void take_links(const CheckpointShare& from, const Ids& mine, CheckpointShare& to) {
-  constexpr std::size_t kSprings = Layout<Dim>::kSprings;
+void take_links(const CheckpointShare& from, const Ids& mine, std::size_t history_length,
+                CheckpointShare& to) {
   const auto has_end = [&mine](const std::vector<std::int64_t>& ids, std::size_t k) {
     return mine.contains(ids[2 * k]) || mine.contains(ids[2 * k + 1]);
   };
   for (std::size_t k = 0; k < from.contact_ids.size() / 2; ++k) {
     if (!has_end(from.contact_ids, k)) continue;
     take(from.contact_ids, k, 2, to.contact_ids);
-    take(from.contact_springs, k, kSprings, to.contact_springs);
+    take(from.contact_springs, k, history_length, to.contact_springs);
   }
   for (std::size_t k = 0; k < from.wall_contact_ids.size(); ++k) {
     if (!mine.contains(from.wall_contact_ids[k])) continue;
     take(from.wall_contact_ids, k, 1, to.wall_contact_ids);
     take(from.wall_contact_walls, k, 1, to.wall_contact_walls);
     take(from.wall_contact_images, k, WallImage().size(), to.wall_contact_images);
-    take(from.wall_contact_springs, k, kSprings, to.wall_contact_springs);
+    take(from.wall_contact_springs, k, history_length, to.wall_contact_springs);
   }
   for (std::size_t k = 0; k < from.bond_laws.size(); ++k) {
     if (!has_end(from.bond_ids, k)) continue;
@@ -109,9 +111,10 @@ class Loader {
       std::vector<Ids> ids;
       for (const CheckpointShare& share : loaded.shares)
         ids.emplace_back(share.ids.begin(), share.ids.end());
+      const auto history_length = static_cast<std::size_t>(history_in<Dim>(limits_.law).length);
       for_each_file(1, [&](const CheckpointShare& share) {
         for (std::size_t l = 0; l < ids.size(); ++l)
-          take_links<Dim>(share, ids[l], loaded.shares[l]);
+          take_links<Dim>(share, ids[l], history_length, loaded.shares[l]);
       });
       for (CheckpointShare& share : loaded.shares) {
         share.totals = totals_;

@@ -21,8 +21,10 @@ constexpr double kLeastOverlap = 1e-3;
 /// Largest stiffness that a material meets.
 double stiffness_of(const ContactTable& contacts, int type) {
   double kn = 0.0;
-  for (int other = 0; other < contacts.num_materials; ++other)
-    kn = std::max(kn, contacts.at(type, other).kn);
+  with_law(contacts.law, [&]<class Law>(Law /*law*/) {
+    for (int other = 0; other < contacts.num_materials; ++other)
+      kn = std::max(kn, Law::stiffness(contacts.at(type, other)));
+  });
   return kn;
 }
 

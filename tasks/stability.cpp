@@ -1,10 +1,12 @@
 #include <barchan/tasks/stability.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -23,10 +25,6 @@ constexpr double kInfinite = std::numeric_limits<double>::infinity();
 double stable_step(double m, double k, double c) {
   if (k > 0.0) return (std::sqrt(c * c + 4.0 * m * k) - c) / k;
   return c > 0.0 ? 2.0 * m / c : kInfinite;
-}
-
-double coefficient(const Dashpot& dashpot, double m_eff) {
-  return dashpot.constant + dashpot.rate * m_eff + dashpot.critical * std::sqrt(m_eff);
 }
 
 double mass_in_motion(const ParticleData& p, int dimension) {
@@ -77,14 +75,16 @@ std::vector<Lightest> lightest_of(const Model& model, const ParticleSet& set) {
   return lightest;
 }
 
-void add_contact(const std::string& name, const ContactConstants& law, double inverse_mass,
-                 int dimension, Limits& limits) {
+void add_contact(const Model& model, const std::string& name, std::array<int, 2> materials,
+                 double inverse_mass, Limits& limits) {
   if (!(inverse_mass > 0.0)) return;
-  const double m = 1.0 / inverse_mass;
-  const double cn = coefficient(law.cn, m), ct = coefficient(law.ct, m);
-  limits.add("contact " + name, stable_step(m, law.kn, 0.0));
-  if (cn > 0.0) limits.add("damping " + name, stable_step(m, law.kn, cn));
-  limits.add("tangential " + name, stable_step(m / (1.0 + spin_gain(dimension)), law.kt, ct));
+  with_law(model.contacts.law, [&]<class Law>(Law /*law*/) {
+    Law::for_each_motion(model.contacts.at(materials[0], materials[1]), 1.0 / inverse_mass,
+                         spin_gain(model.dimension),
+                         [&](const char* motion, double m, double k, double c) {
+                           limits.add(motion + (" " + name), stable_step(m, k, c));
+                         });
+  });
 }
 
 void add_contacts(const Model& model, const std::vector<Lightest>& lightest, Limits& limits) {
@@ -96,12 +96,11 @@ void add_contacts(const Model& model, const std::vector<Lightest>& lightest, Lim
     for (int b = a; b < n; ++b) {
       const double other = a == b ? mine.second : lightest[static_cast<std::size_t>(b)].first;
       if (other < 0.0) continue;
-      add_contact(name(a) + "–" + name(b), model.contacts.at(a, b), mine.first + other,
-                  model.dimension, limits);
+      add_contact(model, name(a) + "–" + name(b), {a, b}, mine.first + other, limits);
     }
     for (const WallSpec& wall : model.walls) {
-      add_contact(name(a) + "–wall of " + name(wall.material), model.contacts.at(a, wall.material),
-                  mine.first, model.dimension, limits);
+      add_contact(model, name(a) + "–wall of " + name(wall.material), {a, wall.material},
+                  mine.first, limits);
     }
   }
 }
@@ -209,12 +208,15 @@ void add_bonds(const Model& model, const ParticleSet& set, Limits& limits) {
 /// contacts the fastest of their motions is that of a mass 1/(n/M + 1/m) on one contact's spring.
 void add_plate(const Model& model, const WallSpec& plate, double num_touching, std::size_t material,
                double inverse_mass, Limits& limits) {
-  const ContactConstants& law = model.contacts.at(static_cast<int>(material), plate.material);
+  const ContactConstants& pair = model.contacts.at(static_cast<int>(material), plate.material);
   const double m = 1.0 / (num_touching / plate.mass + inverse_mass);
-  const double c = coefficient(law.cn, 1.0 / (1.0 / plate.mass + inverse_mass));
+  const auto [k, c] = with_law(model.contacts.law, [&]<class Law>(Law /*law*/) {
+    return std::pair(Law::stiffness(pair),
+                     Law::dashpot(pair, 1.0 / (1.0 / plate.mass + inverse_mass)));
+  });
   limits.add(fmt::format("plate {} on {:.0f} of {}", plate.name, num_touching,
                          model.materials[material].name),
-             stable_step(m, law.kn, c));
+             stable_step(m, k, c));
 }
 
 /// As many particles as fit side by side on both faces of a plate, if there are so many.

@@ -34,7 +34,7 @@ struct Pairs {
       code.push_back(0);
     }
     masks.resize(i.size() / 8);
-    spring.assign(i.size() * Layout<Dim>::kSprings, 0.0);
+    spring.assign(i.size() * LinearSpring::kHistory<Dim>.length, 0.0);
   }
 
   static bool touches(const ParticleStore<Dim>& store, std::int32_t a, std::int32_t b) {
@@ -56,7 +56,7 @@ struct Pairs {
     job.i = i.data();
     job.j = j.data();
     job.code = code.data();
-    job.spring = spring.data();
+    job.history = spring.data();
     job.end = static_cast<std::int64_t>(i.size());
     job.dt = lane.world().dt;
     job.box = lane.world().grid.box();
@@ -76,7 +76,7 @@ constexpr double force_bytes(int dim) {
 /// and side.
 template <int Dim>
 ItemCost pair_cost(double pairs, double particles) {
-  const double listed = 9.0 + 2.0 * 8.0 * Layout<Dim>::kSprings;
+  const double listed = 9.0 + 2.0 * 8.0 * LinearSpring::kHistory<Dim>.length;
   const double per_particle = record_bytes(Dim) + 2.0 * force_bytes(Dim);
   return {listed + per_particle * particles / pairs, listed + 2.0 * per_particle, law_flops(Dim)};
 }
@@ -133,7 +133,7 @@ void steps(benchmark::State& state, VectorWidth width) {
   const ItemCost pair = pair_cost<Dim>(touching, n);
   const double rows = 2.0 * (record_bytes(Dim) + force_bytes(Dim));
   report(state, n,
-         {(9.0 + 16.0 * Layout<Dim>::kSprings) * touching / n + rows,
+         {(9.0 + 16.0 * LinearSpring::kHistory<Dim>.length) * touching / n + rows,
           pair.cache_bytes * touching / n + rows,
           pair.flops * touching / n + (Dim == 2 ? 15.0 : 27.0)});
   state.counters["contacts_each"] = touching / n;

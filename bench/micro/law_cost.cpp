@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include <barchan/core/contact_law.hpp>
+#include <barchan/core/laws/linear_spring.hpp>
 
 namespace barchan::micro {
 namespace {
@@ -37,8 +37,8 @@ struct Counting {
   static unsigned bits(Mask m) { return m ? 1U : 0U; }
 };
 
-LawConstants<Counting> constants() {
-  LawConstants<Counting> c;
+LinearSpring::Constants<Counting> constants() {
+  LinearSpring::Constants<Counting> c;
   c.kn = {1e5}, c.kt = {1e4}, c.inverse_kt = {1e-4}, c.mu = {0.1}, c.cap = {1e300};
   c.cn_rate = {10.0}, c.ct_rate = {10.0};
   return c;
@@ -54,17 +54,17 @@ double law_flops(int dim) {
   const Counted dt{1e-4};
   Counted::count = 0;
   if (dim == 2) {
-    Counted spring{1e-3};
+    Counted spring[1] = {{1e-3}};
     PairForce<Counting, 2> force;
     const PairState<Counting, 2> pair{{0.9}, {0.1}, {1.0}, {0.1}, {2.0}, {0.3}, {2.0}};
-    (void)respond<Counting, Damping::Rate>(constants(), pair, dt, spring, force);
+    (void)LinearSpring::respond<Counting, LinearSpring::Rate>(constants(), pair, dt, spring, force);
     return Counted::count + kGathered2 + kScattered2;
   }
   Counted spring[3] = {{1e-3}, {0.0}, {0.0}};
   PairForce<Counting, 3> force;
   const PairState<Counting, 3> pair{{0.9}, {0.1}, {0.1}, {1.0}, {0.1}, {2.0},
                                     {0.3}, {2.0}, {0.1}, {0.2}, {0.3}};
-  (void)respond<Counting, Damping::Rate>(constants(), pair, dt, spring, force);
+  (void)LinearSpring::respond<Counting, LinearSpring::Rate>(constants(), pair, dt, spring, force);
   return Counted::count + kGathered3 + kScattered3;
 }
 

@@ -47,7 +47,8 @@ Seconds rebuild(Lane<Dim>& lane) {
 /// Least traffic per particle: what a part reads and writes at least once.
 template <int Dim>
 ItemCost least(Part part, double pairs_each) {
-  const double record = (Dim == 2 ? 64.0 : 96.0) + 18.0, spring = 8.0 * Layout<Dim>::kSprings;
+  const double record = (Dim == 2 ? 64.0 : 96.0) + 18.0,
+               spring = 8.0 * LinearSpring::kHistory<Dim>.length;
   ItemCost cost;
   if (part == Order || part == Whole) cost.bytes += 2.0 * record;
   if (part == Candidates || part == Whole) cost.bytes += 64.0 + pairs_each * (9.0 + spring);

@@ -8,6 +8,7 @@
 #include <barchan/core/checkpoint/columns.hpp>
 #include <barchan/core/error.hpp>
 #include <barchan/core/exact_sum.hpp>
+#include <barchan/core/laws/laws.hpp>
 #include <barchan/core/layout.hpp>
 #include <barchan/core/wall_shape.hpp>
 
@@ -20,8 +21,8 @@ struct Widths {
 };
 
 template <int Dim>
-constexpr Widths widths() {
-  return {Layout<Dim>::kSprings, Bond<Dim>::kState};
+Widths widths(int law) {
+  return {static_cast<std::size_t>(history_in<Dim>(law).length), Bond<Dim>::kState};
 }
 
 class Check {
@@ -155,7 +156,7 @@ void check_share(const CheckpointShare& share, const ShareLimits& limits, const 
   const Check check(file);
   if (limits.dimension == 2) check_particles<2>(share, limits, check);
   if (limits.dimension == 3) check_particles<3>(share, limits, check);
-  const Widths w = limits.dimension == 2 ? widths<2>() : widths<3>();
+  const Widths w = limits.dimension == 2 ? widths<2>(limits.law) : widths<3>(limits.law);
   check_links(share, w, limits, check);
   check.size(CheckpointColumn::Totals, share.totals.size(),
              1 + limits.num_walls * ExactSum::kDigits);

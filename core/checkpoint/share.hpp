@@ -42,8 +42,8 @@ struct CheckpointShare {
   std::vector<std::uint8_t> types, flags;
   std::vector<double> externals;  ///< force records, or none at all
 
-  std::vector<std::int64_t> contact_ids;  ///< two each, of pairs whose spring is not zero
-  std::vector<double> contact_springs;    ///< from the first to the second [m]; 1 or 3 each
+  std::vector<std::int64_t> contact_ids;  ///< two each, of pairs whose history is not zero
+  std::vector<double> contact_springs;    ///< histories, as seen from the first
   std::vector<std::int64_t> wall_contact_ids;
   std::vector<std::int32_t> wall_contact_walls;
   std::vector<std::int32_t> wall_contact_images;  ///< three each
@@ -62,6 +62,7 @@ struct CheckpointShare {
 struct ShareLimits {
   int dimension = 2;
   std::size_t num_materials = 0, num_walls = 0, num_bond_laws = 0;
+  int law = 0;  ///< of contact: its place in the list
 };
 
 /// Holds the columns of a share that came from a file against each other and against the model, so

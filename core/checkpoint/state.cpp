@@ -49,19 +49,14 @@ void put(ByteWriter& out, const Vec3& v) {
   for (int c = 0; c < 3; ++c) out.put(v[c]);
 }
 
-void put(ByteWriter& out, const Dashpot& d) {
-  out.put(d.constant);
-  out.put(d.rate);
-  out.put(d.critical);
-}
-
 void put_contacts(ByteWriter& out, const ContactTable& table) {
   out.put(table.no_tension);
-  for (const ContactConstants& c : table.constants) {
-    for (const double value : {c.kn, c.kt, c.mu}) out.put(value);
-    put(out, c.cn);
-    put(out, c.ct);
-  }
+  with_law(table.law, [&]<class Law>(Law /*law*/) {
+    // The first law goes without its name: checkpoints are older than the list.
+    if (table.law != 0) out.put(table.law);
+    for (const typename Law::Pair& pair : table.constants)
+      Law::for_each_number(pair, [&](const char* /*key*/, double value) { out.put(value); });
+  });
 }
 
 void put_bonds(ByteWriter& out, const std::vector<BondLaw>& laws) {

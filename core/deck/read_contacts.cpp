@@ -1,12 +1,11 @@
 // Materials and the contact constants of every pair that can meet.
-#include <algorithm>
-#include <cmath>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include <barchan/core/deck/readers.hpp>
-#include <barchan/core/restitution.hpp>
 #include <barchan/core/validate.hpp>
 
 namespace barchan::deck {
@@ -18,90 +17,51 @@ struct Rules {
   bool no_tension = true;  ///< the clamp of the run
 };
 
-Dashpot read_normal_dashpot(const TableReader& table) {
-  table.has_one_of("normal_damping", "normal_damping_rate");
-  table.has_one_of("normal_damping", "restitution");
-  table.has_one_of("normal_damping_rate", "restitution");
-  Dashpot dashpot;
-  dashpot.constant = table.number("normal_damping");
-  dashpot.rate = table.optional_number("normal_damping_rate").value_or(0.0);
-  return dashpot;
+/// Refuses two keys where only one may stand.
+template <class Law>
+void check_alternatives(const TableReader& table) {
+  const auto group = [](std::size_t k) {
+    return Law::kKeys[k].instead_of >= 0 ? Law::kKeys[k].instead_of : static_cast<int>(k);
+  };
+  for (std::size_t k = 0; k < Law::kKeys.size(); ++k) {
+    for (std::size_t other = k + 1; other < Law::kKeys.size(); ++other) {
+      if (group(k) == group(other)) table.has_one_of(Law::kKeys[k].name, Law::kKeys[other].name);
+    }
+  }
 }
 
-Dashpot read_tangential_dashpot(const TableReader& table) {
-  table.has_one_of("tangential_damping", "tangential_damping_rate");
-  Dashpot dashpot;
-  dashpot.constant = table.number("tangential_damping");
-  dashpot.rate = table.optional_number("tangential_damping_rate").value_or(0.0);
-  return dashpot;
-}
-
-ContactConstants read_constants(const TableReader& table) {
+template <class Law>
+ContactConstants read_constants_of(const TableReader& table) {
+  check_alternatives<Law>(table);
   ContactConstants constants;
-  constants.kn = table.number("normal_stiffness");
-  constants.kt = table.number("tangential_stiffness");
-  constants.cn = read_normal_dashpot(table);
-  constants.restitution = table.optional_number("restitution");
-  constants.ct = read_tangential_dashpot(table);
-  constants.mu = table.number("friction");
+  for (const auto& key : Law::kKeys) {
+    if (const auto value = table.optional_number(key.name)) key.set(constants, *value);
+  }
   return constants;
 }
 
-/// A material without a stiffness has no constants at all.
-std::optional<ContactConstants> read_own_constants(const TableReader& table) {
-  if (table.has("normal_stiffness")) return read_constants(table);
-  for (const char* key :
-       {"tangential_stiffness", "normal_damping", "normal_damping_rate", "restitution",
-        "tangential_damping", "tangential_damping_rate", "friction"}) {
-    if (table.has(key)) {
-      table.fail(key, fmt::format("{} without normal_stiffness", key),
-                 "add normal_stiffness to the material, or move its constants to a [[pair]]");
+/// A material without the law's first key has no constants at all.
+template <class Law>
+std::optional<ContactConstants> read_own_constants_of(const TableReader& table) {
+  const std::string first = Law::kKeys[0].name;
+  if (table.has(first)) return read_constants_of<Law>(table);
+  for (const auto& key : Law::kKeys) {
+    if (table.has(key.name)) {
+      table.fail(key.name, fmt::format("{} without {}", key.name, first),
+                 fmt::format("add {} to the material, or move its constants to a [[pair]]", first));
     }
   }
   return std::nullopt;
 }
 
-/// Two springs, or dashpots, in series, each of which gives `a` with its like.
-double in_series(double a, double b) {
-  return a > 0.0 && b > 0.0 ? 2.0 / (1.0 / a + 1.0 / b) : 0.0;
-}
-
-bool is_zero(const Dashpot& dashpot) {
-  return dashpot.constant == 0.0 && dashpot.rate == 0.0 && dashpot.critical == 0.0;
-}
-
-/// None when both damp, but in ways that do not add up.
-std::optional<Dashpot> in_series(const Dashpot& a, const Dashpot& b) {
-  const Dashpot mixed{in_series(a.constant, b.constant), in_series(a.rate, b.rate),
-                      in_series(a.critical, b.critical)};
-  if (is_zero(mixed) && !is_zero(a) && !is_zero(b)) return std::nullopt;
-  return mixed;
-}
-
-std::optional<ContactConstants> mix(const ContactConstants& a, const ContactConstants& b) {
-  const auto cn = in_series(a.cn, b.cn);
-  const auto ct = in_series(a.ct, b.ct);
-  const bool of_two_kinds = (a.restitution && !is_zero(b.cn)) || (b.restitution && !is_zero(a.cn));
-  if (!cn || !ct || of_two_kinds) return std::nullopt;
-  ContactConstants mixed;
-  mixed.kn = in_series(a.kn, b.kn);
-  mixed.kt = in_series(a.kt, b.kt);
-  mixed.cn = *cn;
-  mixed.ct = *ct;
-  mixed.mu = std::min(a.mu, b.mu);
-  if (a.restitution && b.restitution)
-    mixed.restitution = std::sqrt(*a.restitution) * std::sqrt(*b.restitution);
-  mixed.is_mixed = true;
-  return mixed;
-}
-
-/// Turns a restitution into the dashpot that rebounds with it.
-ContactConstants solved(ContactConstants constants, bool no_tension) {
-  if (constants.restitution) {
-    constants.cn.critical =
-        2.0 * damping_ratio_for(*constants.restitution, no_tension) * std::sqrt(constants.kn);
-  }
-  return constants;
+std::optional<ContactConstants> mix(int law, const ContactConstants& a, const ContactConstants& b) {
+  return with_law(law, [&]<class Law>(Law /*law*/) -> std::optional<ContactConstants> {
+    const auto mixed = Law::mix(a, b);
+    if (!mixed) return std::nullopt;
+    ContactConstants constants;
+    static_cast<typename Law::Pair&>(constants) = *mixed;
+    return constants;
+  });
 }
 
 /// Who can touch whom: walls never touch walls.
@@ -142,7 +102,9 @@ class ContactBuilder {
 
   void read_own() {
     for (const Node* node : root_.tables("material")) {
-      own_.push_back(read_own_constants(TableReader(*node, root_.dimension(), "[[material]]")));
+      const TableReader table(*node, root_.dimension(), "[[material]]");
+      own_.push_back(with_law(
+          law_, [&]<class Law>(Law /*law*/) { return read_own_constants_of<Law>(table); }));
     }
   }
 
@@ -156,13 +118,16 @@ class ContactBuilder {
     ContactTable table;
     table.num_materials = static_cast<int>(num_);
     table.no_tension = rules.no_tension;
+    table.law = law_;
     table.constants.resize(num_ * num_);
     for (std::size_t a = 0; a < num_; ++a) {
       for (std::size_t b = a; b < num_; ++b) {
         const auto constants = find(a, b, rules.is_mixed && users.can_meet(a, b));
         if (!constants && users.can_meet(a, b)) fail_missing(a, b, rules.is_mixed);
-        table.constants[a * num_ + b] = table.constants[b * num_ + a] =
-            solved(constants.value_or(ContactConstants{}), rules.no_tension);
+        auto& pair = table.constants[a * num_ + b];
+        pair = constants.value_or(ContactConstants{});
+        with_law(law_, [&]<class Law>(Law /*law*/) { Law::solve(pair, rules.no_tension); });
+        table.constants[b * num_ + a] = pair;
       }
     }
     return table;
@@ -183,7 +148,8 @@ class ContactBuilder {
       table.fail("materials", fmt::format("a second [[pair]] of '{}' and '{}'", names[0], names[1]),
                  "keep one");
     }
-    explicit_[a * num_ + b] = explicit_[b * num_ + a] = read_constants(table);
+    explicit_[a * num_ + b] = explicit_[b * num_ + a] =
+        with_law(law_, [&]<class Law>(Law /*law*/) { return read_constants_of<Law>(table); });
   }
 
   [[nodiscard]] std::optional<ContactConstants> find(std::size_t a, std::size_t b,
@@ -191,7 +157,7 @@ class ContactBuilder {
     if (explicit_[a * num_ + b]) return explicit_[a * num_ + b];
     if (a == b) return own_[a];
     if (!is_mixed || !own_[a] || !own_[b]) return std::nullopt;
-    const auto mixed = mix(*own_[a], *own_[b]);
+    const auto mixed = mix(law_, *own_[a], *own_[b]);
     if (!mixed) {
       throw InputError(
           draft_.materials.place(static_cast<int>(b)),
@@ -224,6 +190,7 @@ class ContactBuilder {
   const TableReader& root_;
   const DeckDraft& draft_;
   std::size_t num_;
+  int law_ = 0;  ///< place in the list of laws: there is one
   PairTable explicit_;
   PairTable own_;
 };

@@ -14,7 +14,7 @@ namespace deck {
 std::span<const KeySpec> key_specs() {
   static const std::vector<KeySpec> all = [] {
     std::vector<KeySpec> keys;
-    for (const auto part : {run_keys(), physics_keys(), particle_keys()}) {
+    for (const auto part : {run_keys(), physics_keys(), law_keys(), particle_keys()}) {
       keys.insert(keys.end(), part.begin(), part.end());
     }
     return keys;

@@ -1,4 +1,9 @@
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
 #include <barchan/core/deck/schema_keys.hpp>
+#include <barchan/core/laws/laws.hpp>
 
 namespace barchan::deck {
 
@@ -10,34 +15,8 @@ constexpr KeySpec kPhysicsKeys[] = {
     {"[[material]]", "name", T::String, "", "required", "unique"},
     {"[[material]]", "density", T::PositiveNumber, "kg/m³, 2D kg/m²", "required",
      "of a particle's own body"},
-    {"[[material]]", "normal_stiffness", T::PositiveNumber, "N/m", "none",
-     "spring of two particles of this material; without it every pair needs a `[[pair]]`"},
-    {"[[material]]", "tangential_stiffness", T::NonNegativeNumber, "N/m", "0", "tangential spring"},
-    {"[[material]]", "normal_damping", T::NonNegativeNumber, "N·s/m", "0", "dashpot coefficient"},
-    {"[[material]]", "normal_damping_rate", T::NonNegativeNumber, "1/s", "none",
-     "dashpot coefficient per effective mass of the pair, instead of `normal_damping`"},
-    {"[[material]]", "restitution", T::Restitution, "", "none",
-     "ratio of normal speeds after and before a collision, instead of `normal_damping`"},
-    {"[[material]]", "tangential_damping", T::NonNegativeNumber, "N·s/m", "0",
-     "tangential dashpot"},
-    {"[[material]]", "tangential_damping_rate", T::NonNegativeNumber, "1/s", "none",
-     "per effective mass of the pair, instead of `tangential_damping`"},
-    {"[[material]]", "friction", T::NonNegativeNumber, "", "0", "Coulomb coefficient"},
-
     {"[[pair]]", "materials", T::Names, "", "required",
      "the names of two materials, which may be the same"},
-    {"[[pair]]", "normal_stiffness", T::PositiveNumber, "N/m", "required", "normal spring"},
-    {"[[pair]]", "tangential_stiffness", T::NonNegativeNumber, "N/m", "0", "tangential spring"},
-    {"[[pair]]", "normal_damping", T::NonNegativeNumber, "N·s/m", "0", "dashpot coefficient"},
-    {"[[pair]]", "normal_damping_rate", T::NonNegativeNumber, "1/s", "none",
-     "per effective mass of the pair, instead of `normal_damping`"},
-    {"[[pair]]", "restitution", T::Restitution, "", "none",
-     "ratio of normal speeds after and before a collision, instead of `normal_damping`"},
-    {"[[pair]]", "tangential_damping", T::NonNegativeNumber, "N·s/m", "0", "tangential dashpot"},
-    {"[[pair]]", "tangential_damping_rate", T::NonNegativeNumber, "1/s", "none",
-     "per effective mass of the pair, instead of `tangential_damping`"},
-    {"[[pair]]", "friction", T::NonNegativeNumber, "", "0", "Coulomb coefficient"},
-
     {"[contact]", "no_tension", T::Boolean, "", "true",
      "a contact never pulls: the normal force is held at zero where the dashpot outweighs the "
      "spring"},
@@ -86,6 +65,40 @@ constexpr KeySpec kPhysicsKeys[] = {
 
 std::span<const KeySpec> physics_keys() {
   return kPhysicsKeys;
+}
+
+namespace {
+
+template <class Range>
+T type_of(Range range) {
+  if (range == Range::Positive) return T::PositiveNumber;
+  return range == Range::Restitution ? T::Restitution : T::NonNegativeNumber;
+}
+
+/// Where a pair requires a key, materials need it together or not at all. Laws may share keys.
+template <class Law, class... Rest>
+void add_keys(LawList<Law, Rest...> /*laws*/, std::vector<KeySpec>& to) {
+  for (const auto& key : Law::kKeys) {
+    const bool is_known =
+        std::any_of(to.begin(), to.end(), [&](const KeySpec& k) { return k.key == key.name; });
+    if (is_known) continue;
+    const bool is_required = std::string_view(key.fallback) == "required";
+    to.push_back({"[[material]]", key.name, type_of(key.range), key.unit,
+                  is_required ? "none" : key.fallback, key.meaning});
+    to.push_back({"[[pair]]", key.name, type_of(key.range), key.unit, key.fallback, key.meaning});
+  }
+  if constexpr (sizeof...(Rest) > 0) add_keys(LawList<Rest...>{}, to);
+}
+
+}  // namespace
+
+std::span<const KeySpec> law_keys() {
+  static const std::vector<KeySpec> keys = [] {
+    std::vector<KeySpec> of_laws;
+    add_keys(Laws{}, of_laws);
+    return of_laws;
+  }();
+  return keys;
 }
 
 }  // namespace barchan::deck

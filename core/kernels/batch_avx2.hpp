@@ -1,7 +1,7 @@
 #pragma once
 
-#include <barchan/core/contact_law.hpp>
 #include <barchan/core/kernels/pair_job.hpp>
+#include <barchan/core/laws/contact.hpp>
 #include <barchan/core/simd/avx2.hpp>
 
 namespace barchan::kernels {
@@ -11,45 +11,46 @@ struct BatchAvx2 {
   using Simd = simd::Avx2;
   using Real = Simd::Real;
 
+  template <class Law>
   struct Tables {
     const double* rows;
-    LawConstants<Simd> first;  ///< the only law there is
+    typename Law::template Constants<Simd> first;  ///< the only pair of materials there is
   };
 
-  template <Damping D>
-  BARCHAN_INLINE LawConstants<Simd> gather_rows(const double* rows, const std::uint8_t* code) {
-    Real r[3][4];
+  template <class Law, int Level>
+  BARCHAN_INLINE typename Law::template Constants<Simd> gather_rows(const double* rows,
+                                                                    const std::uint8_t* code) {
+    constexpr int kQuads = (Law::fields_read(Level) + 3) / 4;
+    Real r[kQuads][4];
     for (int q = 0; q < 4; ++q) {
-      for (int h = 0; h < (D == Damping::Constant ? 2 : 3); ++h)
-        r[h][q] = Simd::load(rows + LawView::kRow * code[q] + 4 * h);
+      for (int h = 0; h < kQuads; ++h) r[h][q] = Simd::load(rows + LawView::kRow * code[q] + 4 * h);
     }
-    Simd::transpose(r[0][0], r[0][1], r[0][2], r[0][3]);
-    Simd::transpose(r[1][0], r[1][1], r[1][2], r[1][3]);
-    LawConstants<Simd> c{r[0][0], r[0][1], r[0][2], r[0][3], r[1][0], r[1][1],
-                         r[1][2], r[1][3], {},      {},      {}};
-    if constexpr (D != Damping::Constant) {
-      Simd::transpose(r[2][0], r[2][1], r[2][2], r[2][3]);
-      c.ct_rate = r[2][0];
-      c.cn_critical = r[2][1];
-      c.ct_critical = r[2][2];
-    }
-    return c;
+    for (int h = 0; h < kQuads; ++h) Simd::transpose(r[h][0], r[h][1], r[h][2], r[h][3]);
+    return constants_from<Law, Simd>(
+        [&r](auto field) __attribute__((always_inline)) {
+          if constexpr (field.place < 4 * kQuads)
+            return r[field.place / 4][field.place % 4];
+          else
+            return Real{};
+        },
+        FieldsOf<Law>{});
   }
 
-  template <Damping D, bool OneLaw>
-  BARCHAN_INLINE Tables tables(const LawView& laws) {
-    Tables t{laws.rows, {}};
+  template <class Law, int Level, bool OneRow>
+  BARCHAN_INLINE Tables<Law> tables(const LawView& laws) {
+    Tables<Law> t{laws.rows, {}};
     const std::uint8_t only[4] = {1, 1, 1, 1};
-    if constexpr (OneLaw) t.first = gather_rows<D>(laws.rows, only);
+    if constexpr (OneRow) t.first = gather_rows<Law, Level>(laws.rows, only);
     return t;
   }
 
-  template <Damping D, bool OneLaw>
-  BARCHAN_INLINE Looked<Simd, OneLaw> constants(const Tables& t, const std::uint8_t* code) {
-    if constexpr (OneLaw)
+  template <class Law, int Level, bool OneRow>
+  BARCHAN_INLINE Looked<Law, Simd, OneRow> constants(const Tables<Law>& t,
+                                                     const std::uint8_t* code) {
+    if constexpr (OneRow)
       return t.first;
     else
-      return gather_rows<D>(t.rows, code);
+      return gather_rows<Law, Level>(t.rows, code);
   }
 
   template <class T>
@@ -103,23 +104,9 @@ struct BatchAvx2 {
     dx = x[0], dy = x[1], dz = x[2], reach = x[Dim];
   }
 
-  template <Damping D, int Dim>
-  BARCHAN_INLINE Simd::Mask respond_with_spring(const PairJob& job, std::int64_t k,
-                                                const LawConstants<Simd>& c,
-                                                const PairState<Simd, Dim>& p, Real dt,
-                                                PairForce<Simd, Dim>& f) {
-    if constexpr (Dim == 2) {
-      Real s = Simd::load(job.spring + k);
-      const auto touching = respond<Simd, D>(c, p, dt, s, f);
-      Simd::store(job.spring + k, s);
-      return touching;
-    } else {
-      double* h = job.spring + 24 * (k / 8) + k % 8;
-      Real s[3] = {Simd::load(h), Simd::load(h + 8), Simd::load(h + 16)};
-      const auto touching = respond<Simd, D>(c, p, dt, s, f);
-      for (int e = 0; e < 3; ++e) Simd::store(h + 8 * e, s[e]);
-      return touching;
-    }
+  template <bool TwoTorques, class Records>
+  BARCHAN_INLINE const Records& of_second(const Records& same, const Records& other) {
+    return TwoTorques ? other : same;
   }
 
   /// Force records [fx fy ft size] of four pairs, pair q in r[q].
@@ -136,29 +123,38 @@ struct BatchAvx2 {
     Simd::transpose(r[4], r[5], r[6], r[7]);
   }
 
-  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f) {
+  /// @param f  on the first of the pair. @param g  the same with the torque on the second
+  template <bool TwoTorques>
+  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f,
+                              const PairForce<Simd, 2>& g) {
     const Real sign = {-1, -1, 1, 1};
-    Real r[4];
+    Real r[4], other[4];
     records(f, r);
+    if constexpr (TwoTorques) records(g, other);
+    const auto& second = of_second<TwoTorques>(r, other);
     for (int q = 0; q < 4; ++q) {
       double* a = at(job.force, 4, job.i[k + q]);
       Simd::store(a, Simd::load(a) + r[q]);
       double* b = at(job.force, 4, job.j[k + q]);
-      Simd::store(b, combine(r[q], sign, Simd::load(b)));
+      Simd::store(b, combine(second[q], sign, Simd::load(b)));
     }
   }
 
-  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f) {
+  template <bool TwoTorques>
+  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f,
+                              const PairForce<Simd, 3>& g) {
     const Real sign = {-1, -1, -1, 1};
-    Real r[8];
+    Real r[8], other[8];
     records(f, r);
+    if constexpr (TwoTorques) records(g, other);
+    const auto& second = of_second<TwoTorques>(r, other);
     for (int q = 0; q < 4; ++q) {
       double* a = at(job.force, 8, job.i[k + q]);
       Simd::store(a, Simd::load(a) + r[q]);
       Simd::store(a + 4, Simd::load(a + 4) + r[4 + q]);
       double* b = at(job.force, 8, job.j[k + q]);
-      Simd::store(b, combine(r[q], sign, Simd::load(b)));
-      Simd::store(b + 4, Simd::load(b + 4) + r[4 + q]);
+      Simd::store(b, combine(second[q], sign, Simd::load(b)));
+      Simd::store(b + 4, Simd::load(b + 4) + second[4 + q]);
     }
   }
 };

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <barchan/core/contact_law.hpp>
 #include <barchan/core/kernels/pair_job.hpp>
+#include <barchan/core/laws/contact.hpp>
 #include <barchan/core/simd/avx512.hpp>
 
 namespace barchan::kernels {
@@ -11,64 +11,72 @@ struct BatchAvx512 {
   using Simd = simd::Avx512;
   using Real = Simd::Real;
 
+  template <class Law, bool OneRow>
   struct Tables {
+    typename Law::template Constants<Simd> only;  ///< the only pair of materials there is
+  };
+  template <class Law>
+  struct Tables<Law, false> {
     const double* rows;
     int size;
-    LawConstants<Simd> column;  ///< lane c is law c; with one law, every lane is that law
+    Real column[Law::kNumFields];  ///< of each field; lane c is pair of materials c
   };
 
-  BARCHAN_INLINE __m512d column(const LawView& laws, int field, bool one) {
-    return one ? _mm512_set1_pd(laws.rows[LawView::kRow + field])
-               : _mm512_load_pd(laws.columns + LawView::kColumn * field);
+  template <class Law, int... F>
+  BARCHAN_INLINE Tables<Law, false> columns_of(const LawView& laws,
+                                               std::integer_sequence<int, F...> /*fields*/) {
+    return {laws.rows, laws.size, {Simd::load(laws.columns + LawView::kColumn * F)...}};
   }
 
-  template <Damping D, bool OneLaw>
-  BARCHAN_INLINE Tables tables(const LawView& laws) {
-    const auto at = [&laws](int field) __attribute__((always_inline)) {
-      return Real(column(laws, field, OneLaw));
-    };
-    return {laws.rows,
-            laws.size,
-            {at(LawView::Kn), at(LawView::Kt), at(LawView::InverseKt), at(LawView::Mu),
-             at(LawView::Cap), at(LawView::Cn), at(LawView::Ct), at(LawView::CnRate),
-             at(LawView::CtRate), at(LawView::CnCritical), at(LawView::CtCritical)}};
+  template <class Law, int Level, bool OneRow>
+  BARCHAN_INLINE Tables<Law, OneRow> tables(const LawView& laws) {
+    if constexpr (OneRow) {
+      return {constants_from<Law, Simd>(
+          [&laws](auto field) __attribute__((always_inline)) {
+            return Simd::set(laws.rows[LawView::kRow + field.place]);
+          },
+          FieldsOf<Law>{})};
+    } else {
+      return columns_of<Law>(laws, FieldsOf<Law>{});
+    }
   }
 
-  template <Damping D, bool OneLaw>
-  BARCHAN_INLINE Looked<Simd, OneLaw> constants(const Tables& t, const std::uint8_t* code) {
-    if constexpr (OneLaw)
-      return t.column;
+  template <class Law, int Level, bool OneRow>
+  BARCHAN_INLINE Looked<Law, Simd, OneRow> constants(const Tables<Law, OneRow>& t,
+                                                     const std::uint8_t* code) {
+    if constexpr (OneRow)
+      return t.only;
     else
-      return look_up<D>(t, code);
+      return look_up<Law, Level>(t, code);
   }
 
-  template <Damping D>
-  BARCHAN_INLINE LawConstants<Simd> look_up(const Tables& t, const std::uint8_t* code) {
+  template <class Law, int Level>
+  BARCHAN_INLINE typename Law::template Constants<Simd> look_up(const Tables<Law, false>& t,
+                                                                const std::uint8_t* code) {
     const __m512i lane =
         _mm512_cvtepu8_epi64(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(code)));
     if (t.size <= LawView::kColumn) {
-      const auto look = [lane](Real c) __attribute__((always_inline)) {
-        return Real(_mm512_permutexvar_pd(lane, __m512d(c)));
-      };
-      const auto& c = t.column;
-      LawConstants<Simd> out{look(c.kn), look(c.kt), look(c.inverse_kt),
-                             look(c.mu), c.cap,      look(c.cn),
-                             look(c.ct), {},         {},
-                             {},         {}};
-      if constexpr (D != Damping::Constant) {
-        out.cn_rate = look(c.cn_rate), out.ct_rate = look(c.ct_rate);
-        out.cn_critical = look(c.cn_critical), out.ct_critical = look(c.ct_critical);
-      }
-      return out;
+      return constants_from<Law, Simd>(
+          [ lane, &t ](auto field) __attribute__((always_inline)) {
+            const Real c = t.column[field.place];
+            if constexpr (Law::is_common(field.place))
+              return c;
+            else if constexpr (field.place < Law::fields_read(Level))
+              return Real(_mm512_permutexvar_pd(lane, __m512d(c)));
+            else
+              return Real{};
+          },
+          FieldsOf<Law>{});
     }
     const __m512i row = _mm512_slli_epi64(lane, 4);
-    const auto look = [&t, row ](int field) __attribute__((always_inline)) {
-      return Real(_mm512_i64gather_pd(row, t.rows + field, 8));
-    };
-    return {look(LawView::Kn),         look(LawView::Kt),        look(LawView::InverseKt),
-            look(LawView::Mu),         look(LawView::Cap),       look(LawView::Cn),
-            look(LawView::Ct),         look(LawView::CnRate),    look(LawView::CtRate),
-            look(LawView::CnCritical), look(LawView::CtCritical)};
+    return constants_from<Law, Simd>(
+        [ row, &t ](auto field) __attribute__((always_inline)) {
+          if constexpr (field.place < Law::fields_read(Level))
+            return Real(_mm512_i64gather_pd(row, t.rows + field.place, 8));
+          else
+            return Real{};
+        },
+        FieldsOf<Law>{});
   }
 
   BARCHAN_INLINE std::size_t wide(std::int32_t i) { return static_cast<std::uint32_t>(i); }
@@ -153,23 +161,9 @@ struct BatchAvx512 {
     dx = c[0], dy = c[1], dz = c[2], reach = c[Dim];
   }
 
-  template <Damping D, int Dim>
-  BARCHAN_INLINE Simd::Mask respond_with_spring(const PairJob& job, std::int64_t k,
-                                                const LawConstants<Simd>& c,
-                                                const PairState<Simd, Dim>& p, Real dt,
-                                                PairForce<Simd, Dim>& f) {
-    if constexpr (Dim == 2) {
-      Real s = Simd::load(job.spring + k);
-      const auto touching = respond<Simd, D>(c, p, dt, s, f);
-      Simd::store(job.spring + k, s);
-      return touching;
-    } else {
-      double* h = job.spring + 3 * k;
-      Real s[3] = {Simd::load(h), Simd::load(h + 8), Simd::load(h + 16)};
-      const auto touching = respond<Simd, D>(c, p, dt, s, f);
-      for (int e = 0; e < 3; ++e) Simd::store(h + 8 * e, s[e]);
-      return touching;
-    }
+  template <bool TwoTorques, class Records>
+  BARCHAN_INLINE const Records& of_second(const Records& same, const Records& other) {
+    return TwoTorques ? other : same;
   }
 
   /// Force records [fx fy ft size] of eight pairs, pair q in r[q].
@@ -198,27 +192,36 @@ struct BatchAvx512 {
     for (int q = 0; q < 8; ++q) r[q] = __m512d(o[q]);
   }
 
-  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f) {
+  /// @param f  on the first of the pair. @param g  the same with the torque on the second
+  template <bool TwoTorques>
+  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f,
+                              const PairForce<Simd, 2>& g) {
     const __m256d sign = _mm256_setr_pd(-1, -1, 1, 1);
-    __m256d r[8];
+    __m256d r[8], other[8];
     records(f, r);
+    if constexpr (TwoTorques) records(g, other);
+    const auto& second = of_second<TwoTorques>(r, other);
     for (int q = 0; q < 8; ++q) {
       double* a = job.force + 4 * wide(job.i[k + q]);
       double* b = job.force + 4 * wide(job.j[k + q]);
       _mm256_store_pd(a, _mm256_add_pd(_mm256_load_pd(a), r[q]));
-      _mm256_store_pd(b, _mm256_fmadd_pd(r[q], sign, _mm256_load_pd(b)));
+      _mm256_store_pd(b, _mm256_fmadd_pd(second[q], sign, _mm256_load_pd(b)));
     }
   }
 
-  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f) {
+  template <bool TwoTorques>
+  BARCHAN_INLINE void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f,
+                              const PairForce<Simd, 3>& g) {
     const __m512d sign = _mm512_setr_pd(-1, -1, -1, 1, 1, 1, 1, 1);
-    __m512d r[8];
+    __m512d r[8], other[8];
     records(f, r);
+    if constexpr (TwoTorques) records(g, other);
+    const auto& second = of_second<TwoTorques>(r, other);
     for (int q = 0; q < 8; ++q) {
       double* a = job.force + 8 * wide(job.i[k + q]);
       double* b = job.force + 8 * wide(job.j[k + q]);
       _mm512_store_pd(a, _mm512_add_pd(_mm512_load_pd(a), r[q]));
-      _mm512_store_pd(b, _mm512_fmadd_pd(r[q], sign, _mm512_load_pd(b)));
+      _mm512_store_pd(b, _mm512_fmadd_pd(second[q], sign, _mm512_load_pd(b)));
     }
   }
 };

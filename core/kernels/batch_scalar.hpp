@@ -1,26 +1,25 @@
 #pragma once
 
-#include <barchan/core/contact_law.hpp>
 #include <barchan/core/kernels/pair_job.hpp>
+#include <barchan/core/laws/contact.hpp>
 #include <barchan/core/simd/scalar.hpp>
 
 namespace barchan::kernels {
 
-/// Pair by pair: gather, law, scatter; a pair that does not touch touches no memory but its spring.
+/// Pair by pair: gather, law, scatter; one that does not touch writes to its history alone.
 struct BatchScalar {
   using Simd = simd::Scalar;
 
-  template <Damping D, bool OneLaw>
+  template <class Law, int Level, bool OneLaw>
   static const double* tables(const LawView& laws) {
     return laws.rows;
   }
 
-  template <Damping D, bool OneLaw>
-  static LawConstants<Simd> constants(const double* rows, const std::uint8_t* code) {
+  template <class Law, int Level, bool OneLaw>
+  static typename Law::template Constants<Simd> constants(const double* rows,
+                                                          const std::uint8_t* code) {
     const double* r = rows + LawView::kRow * *code;
-    return {r[LawView::Kn],     r[LawView::Kt],         r[LawView::InverseKt], r[LawView::Mu],
-            r[LawView::Cap],    r[LawView::Cn],         r[LawView::Ct],        r[LawView::CnRate],
-            r[LawView::CtRate], r[LawView::CnCritical], r[LawView::CtCritical]};
+    return constants_from<Law, Simd>([r](auto field) { return r[field.place]; }, FieldsOf<Law>{});
   }
 
   static void gather(const PairJob& job, std::int64_t k, PairState<Simd, 2>& p) {
@@ -48,24 +47,6 @@ struct BatchScalar {
     reach = a[Dim] + b[Dim];
   }
 
-  template <Damping D, int Dim>
-  [[gnu::always_inline]] static Simd::Mask respond_with_spring(const PairJob& job, std::int64_t k,
-                                                               const LawConstants<Simd>& c,
-                                                               const PairState<Simd, Dim>& p,
-                                                               double dt, PairForce<Simd, Dim>& f) {
-    if constexpr (Dim == 2) {
-      return respond<Simd, D>(c, p, dt, job.spring[k], f);
-    } else {
-      double* s = job.spring + 24 * (k / 8) + k % 8;
-      double t[3] = {s[0], s[8], s[16]};
-      const bool touching = respond<Simd, D>(c, p, dt, t, f);
-      s[0] = t[0];
-      s[8] = t[1];
-      s[16] = t[2];
-      return touching;
-    }
-  }
-
   // Two numbers at a time, which every compiler has: half the loads and stores.
   using Two = double __attribute__((vector_size(16)));
   [[gnu::always_inline]] static void add(double* to, Two value) {
@@ -75,29 +56,33 @@ struct BatchScalar {
     __builtin_memcpy(to, &sum, sizeof sum);
   }
 
-  static void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f) {
+  /// @param f  on the first of the pair. @param g  torque on the second
+  template <bool TwoTorques>
+  static void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 2>& f,
+                      const PairForce<Simd, 2>& g) {
     double* a = job.force + 4 * static_cast<std::int64_t>(job.i[k]);
     double* b = job.force + 4 * static_cast<std::int64_t>(job.j[k]);
-    const Two force{f.fx, f.fy}, rest{f.ft, f.size};
+    const Two force{f.fx, f.fy};
     add(a, force);
-    add(a + 2, rest);
+    add(a + 2, Two{f.ft, f.size});
     add(b, -force);
-    add(b + 2, rest);
+    add(b + 2, Two{g.ft, f.size});
   }
 
-  static void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f) {
+  template <bool TwoTorques>
+  static void scatter(const PairJob& job, std::int64_t k, const PairForce<Simd, 3>& f,
+                      const PairForce<Simd, 3>& g) {
     double* a = job.force + 8 * static_cast<std::int64_t>(job.i[k]);
     double* b = job.force + 8 * static_cast<std::int64_t>(job.j[k]);
-    const Two force{f.fx, f.fy}, above{f.fz, f.size}, below{-f.fz, f.size}, torque{f.tx, f.ty},
-        rest{f.tz, 0.0};
+    const Two force{f.fx, f.fy}, above{f.fz, f.size}, below{-f.fz, f.size};
     add(a, force);
     add(a + 2, above);
-    add(a + 4, torque);
-    add(a + 6, rest);
+    add(a + 4, Two{f.tx, f.ty});
+    add(a + 6, Two{f.tz, 0.0});
     add(b, -force);
     add(b + 2, below);
-    add(b + 4, torque);
-    add(b + 6, rest);
+    add(b + 4, Two{g.tx, g.ty});
+    add(b + 6, Two{g.tz, 0.0});
   }
 };
 

@@ -44,7 +44,7 @@ namespace {
 
 /// Who picks the kernels of one width.
 struct Pickers {
-  PairKernel (*pairs)(int dim, int variant);
+  PairKernel (*pairs)(int law, int dim, int variant);
   NarrowKernel (*narrow)(int dim, bool periodic);
   SearchKernel (*search)(int dim);
   RowKernel (*rows)(int dim, bool damped);
@@ -62,17 +62,36 @@ Pickers pickers_of(VectorWidth width) {
   return {pick_scalar, pick_narrow_scalar, pick_search_scalar, pick_rows_scalar};
 }
 
+/// The place in the list is known when it is compiled: a law keeps a pointer to such a function.
+template <int Place>
+PairKernel listed_kernel(VectorWidth width, int dim, int variant) {
+  return pickers_of(width).pairs(Place, dim, variant);
+}
+
+template <int Place = 0>
+ContactLaw law_at(int place) {
+  if constexpr (Place + 1 < Laws::kSize) {
+    if (place > Place) return law_at<Place + 1>(place);
+  }
+  return with_law(std::integral_constant<int, Place>{},
+                  [](auto law) { return contact_law<decltype(law)>(&listed_kernel<Place>); });
+}
+
 }  // namespace
+
+ContactLaw listed_law(int place) {
+  return law_at(place);
+}
 
 KernelSet make_kernels(int dim, VectorWidth width, const LawTable& laws, bool has_bonds,
                        const PeriodicBox& box) {
-  int variant = static_cast<int>(laws.damping());
+  int variant = laws.level();
   if (box.any()) variant |= kernels::kPeriodic;
-  if (laws.size() == 2 && !has_bonds) variant |= kernels::kOneLaw;
+  if (laws.size() == 2 && !has_bonds) variant |= kernels::kOneRow;
   const Pickers pick = pickers_of(width);
   // In 2D almost every candidate of a packing touches; in 3D about half do.
   return {width,
-          pick.pairs(dim, variant),
+          laws.law().kernel(width, dim, variant),
           dim == 3 ? pick.narrow(dim, box.any()) : nullptr,
           pick.search(dim),
           pick.rows(dim, false),

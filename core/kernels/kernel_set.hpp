@@ -27,7 +27,10 @@ std::string name_of(VectorWidth width);
 /// those it has.
 VectorWidth vector_width(const std::string& name);
 
-/// @param has_bonds  some pairs have the null law, so that laws must be looked up pair by pair
+/// A law of the list (laws.hpp).
+[[nodiscard]] ContactLaw listed_law(int place);
+
+/// @param has_bonds  some pairs have the null law, so that constants must be looked up pair by pair
 KernelSet make_kernels(int dim, VectorWidth width, const LawTable& laws, bool has_bonds,
                        const PeriodicBox& box);
 

@@ -21,7 +21,7 @@ struct PairJob {
   const std::int32_t* i = nullptr;  ///< first particle of each pair
   const std::int32_t* j = nullptr;
   const std::uint8_t* code = nullptr;  ///< law of each pair
-  double* spring = nullptr;            ///< per batch: component by component, eight lanes each
+  double* history = nullptr;           ///< per batch: number by number, eight lanes each
   std::int64_t begin = 0, end = 0;
   double dt = 0.0;
   PeriodicBox box;

@@ -3,8 +3,8 @@
 
 namespace barchan::kernels {
 
-PairKernel pick_avx2(int dim, int variant) {
-  return dim == 2 ? pick<BatchAvx2, 2>(variant) : pick<BatchAvx2, 3>(variant);
+PairKernel pick_avx2(int law, int dim, int variant) {
+  return pick_listed<BatchAvx2>(Laws{}, law, dim, variant);
 }
 
 }  // namespace barchan::kernels

@@ -3,8 +3,8 @@
 
 namespace barchan::kernels {
 
-PairKernel pick_avx512(int dim, int variant) {
-  return dim == 2 ? pick<BatchAvx512, 2>(variant) : pick<BatchAvx512, 3>(variant);
+PairKernel pick_avx512(int law, int dim, int variant) {
+  return pick_listed<BatchAvx512>(Laws{}, law, dim, variant);
 }
 
 }  // namespace barchan::kernels

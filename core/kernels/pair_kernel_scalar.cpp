@@ -4,8 +4,8 @@
 
 namespace barchan::kernels {
 
-PairKernel pick_scalar(int dim, int variant) {
-  return dim == 2 ? pick<BatchScalar, 2>(variant) : pick<BatchScalar, 3>(variant);
+PairKernel pick_scalar(int law, int dim, int variant) {
+  return pick_listed<BatchScalar>(Laws{}, law, dim, variant);
 }
 
 NarrowKernel pick_narrow_scalar(int dim, bool periodic) {

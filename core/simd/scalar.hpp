@@ -11,7 +11,9 @@ struct Scalar {
   static constexpr int kWidth = 1;
 
   static Real set(double a) { return a; }
+  static Real load(const double* p) { return *p; }
   static Real load_unaligned(const double* p) { return *p; }
+  static void store(double* p, Real a) { *p = a; }
   static Real sqrt(Real a) { return __builtin_sqrt(a); }
   static Real abs(Real a) { return __builtin_fabs(a); }
   /// `magnitude` >= 0 with the sign of `sign`.

@@ -27,7 +27,9 @@ struct Sample {
   AlignedVector<double> motion, spin, force;
   PairList list;
 
-  Sample(int particles, int pairs, int num_laws, unsigned seed) : num_rows(particles + 2) {
+  Sample(int particles, int pairs, int num_laws, unsigned seed,
+         int history_length = LinearSpring::kHistory<Dim>.length)
+      : num_rows(particles + 2) {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> any(-1.0, 1.0);
     const auto n = static_cast<std::size_t>(num_rows);
@@ -55,7 +57,7 @@ struct Sample {
                 static_cast<std::uint8_t>(random() % static_cast<unsigned>(num_laws)));
     }
     list.pad(particles);
-    list.template reset_springs<Dim>();
+    list.reset_history(history_length);
   }
 
   void start_forces() {
@@ -86,7 +88,7 @@ struct Sample {
     j.i = list.i.data();
     j.j = list.j.data();
     j.code = list.code.data();
-    j.spring = list.spring.data();
+    j.history = list.history.data();
     j.end = list.size();
     j.dt = 2e-2;
     j.box = box;

@@ -59,7 +59,7 @@ void expect_same_at_any_width(const Choice& c, int pairs) {
                     name_of(vector_widths()[w]), Dim, pairs, c.num_materials,
                     static_cast<int>(c.dashpots), c.no_tension, c.has_bonds, c.periodic);
     ASSERT_TRUE(same_bits(after[w].force, after[0].force)) << what;
-    ASSERT_TRUE(same_values(after[w].list.spring, after[0].list.spring)) << what;
+    ASSERT_TRUE(same_values(after[w].list.history, after[0].list.history)) << what;
   }
 }
 
@@ -81,7 +81,7 @@ TEST(Kernels, PaddingOfTheLastBatchDoesNothing) {
   Sample<2> empty(4, 0, 2, 1);
   empty.list.push(4, 5, 0);
   empty.list.pad(4);
-  empty.list.reset_springs<2>();
+  empty.list.reset_history(LinearSpring::kHistory<2>.length);
   const LawTable laws = laws_of(1, Dashpots::Critical, false);
   for (const VectorWidth width : vector_widths()) {
     make_kernels(2, width, laws, true, box_of<2>(true)).pairs(empty.job(laws, box_of<2>(true)));
@@ -97,7 +97,7 @@ TEST(Kernels, SampleHasPairsThatSlideStickAndDoNotTouch) {
   for (std::size_t k = 0; k < 200; ++k) {
     if (sample.list.code[k] == 0) continue;
     const double* f = forces[k].data();
-    const double mu = laws.view().rows[LawView::kRow * sample.list.code[k] + LawView::Mu];
+    const double mu = laws.row(sample.list.code[k])[LinearSpring::Mu];
     const double ft = std::fabs(f[2]), total = std::hypot(f[0], f[1]),
                  fn = std::sqrt(std::max(0.0, total * total - ft * ft));
     if (total == 0.0)
@@ -127,10 +127,10 @@ void expect_antisymmetric(const Choice& c) {
     const double *f = one_way[k].data(), *g = other_way[k].data();
     for (int q = 0; q < Dim; ++q) ASSERT_EQ(f[q], -g[q]);
     for (int q = L::kTorque; q < L::kTorque + kSpins<Dim>; ++q) ASSERT_EQ(f[q], g[q]);
-    for (int q = 0; q < L::kSprings; ++q) {
+    for (int q = 0; q < there.list.history_length; ++q) {
       const auto at = static_cast<std::int64_t>(k);
-      ASSERT_EQ(there.list.template springs<Dim>(at)[q * kBatch],
-                (Dim == 3 ? -1.0 : 1.0) * back.list.template springs<Dim>(at)[q * kBatch]);
+      ASSERT_EQ(there.list.history_of(at)[q * kBatch],
+                LinearSpring::kHistory<Dim>.sign(q, true) * back.list.history_of(at)[q * kBatch]);
     }
   }
 }

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include <barchan/core/checkpoint/share.hpp>
 #include <barchan/core/lane.hpp>
 
 // Lanes side by side without ranks or threads: what passes between them goes from hand to hand.
@@ -108,6 +109,15 @@ class Lanes {
     exchange_ghosts();
   }
 
+  /// Instead of seed. @param shares  one a lane
+  void restore(std::span<const CheckpointShare> shares) {
+    for (std::size_t l = 0; l < lanes_.size(); ++l) {
+      lanes_[l]->restore(cuts_[l], cuts_[l + 1], shares[l]);
+      lanes_[l]->order();
+    }
+    exchange_ghosts();
+  }
+
   void rebuild(const std::vector<int>& cuts) {
     cuts_ = cuts;
     std::vector<std::vector<std::byte>> left(lanes_.size()), right(lanes_.size());
@@ -148,15 +158,14 @@ class Lanes {
       const auto& store = lane->store();
       const auto take = [&](const PairList& list) {
         for (std::int64_t k = 0; k < list.size(); ++k) {
-          if (!list.template has_spring<Dim>(k)) continue;
+          if (!list.has_history(k)) continue;
           const auto at = static_cast<std::size_t>(k);
           const std::int64_t a = store.id[static_cast<std::size_t>(list.i[at])],
                              b = store.id[static_cast<std::size_t>(list.j[at])];
           std::vector<double> s;
-          for (int c = 0; c < Layout<Dim>::kSprings; ++c) {
-            const double value = list.template springs<Dim>(k)[c * kBatch];
-            s.push_back(Dim == 3 && a > b ? -value : value);
-          }
+          const History& form = world_->laws.law().template in<Dim>().history;
+          for (int c = 0; c < form.length; ++c)
+            s.push_back(form.sign(c, a > b) * list.history_of(k)[c * kBatch]);
           const auto [it, is_new] = all.try_emplace(std::minmax(a, b), s);
           if (!is_new && it->second != s) sides_agree = false;
         }

@@ -40,7 +40,7 @@ Migration<2> a_migration(const World<2>& world) {
   key(p) = world.grid.key(p.values<&Store::motion>());
   *p.values<&Store::type>() = 1;
   m.particles = {p};
-  m.contacts = {{0, 9, {0.25}}};
+  m.contacts = {1, {{0, 9}}, {0.25}};
   m.walls = {{0, 0, {-1, 0, 0}, {0.5}}};
   m.bonds = {{{7, 9, 0, 0.1, {}}, 1}};
   return m;
@@ -54,8 +54,8 @@ TEST(LaneMessages, BringArrivalsAcrossWithHistoryAndBonds) {
   Migration<2> came = decode_migration(message, world, 0, kSlabs);
 
   EXPECT_EQ(id(came.particles.at(0)), 7);
-  EXPECT_EQ(came.contacts.at(0).spring[0], 0.25);
-  EXPECT_EQ(came.walls.at(0).spring[0], 0.5);
+  EXPECT_EQ(came.contacts.numbers.at(0), 0.25);
+  EXPECT_EQ(came.walls.at(0).history[0], 0.5);
   EXPECT_EQ(came.walls.at(0).image, (WallImage{-1, 0, 0}));
   EXPECT_EQ(came.bonds.at(0).bond.id_b, 9);
 }
@@ -74,8 +74,10 @@ TEST(LaneMessages, RefuseWhatWouldLeaveAnArray) {
   refuses([](Migration<2>& m) { key(m.particles[0]) += 1; });
   refuses([](Migration<2>& m) { *m.particles[0].values<&Store::type>() = 2; });
   refuses([](Migration<2>& m) { *m.particles[0].values<&Store::flags>() = 4; });
-  refuses([](Migration<2>& m) { m.contacts[0].handle = 1; });
-  refuses([](Migration<2>& m) { m.contacts[0].handle = -1; });
+  refuses([](Migration<2>& m) { m.contacts.rows[0].handle = 1; });
+  refuses([](Migration<2>& m) { m.contacts.rows[0].handle = -1; });
+  refuses([](Migration<2>& m) { m.contacts.numbers.push_back(0.5); });
+  refuses([](Migration<2>& m) { m.contacts.numbers.clear(); });
   refuses([](Migration<2>& m) { m.walls[0].number = 1; });
   refuses([](Migration<2>& m) { m.walls[0].wall = 1; });
   refuses([](Migration<2>& m) { m.walls[0].image[1] = 1 << 30; });

@@ -19,16 +19,15 @@ TEST(LawTable, GivesAPairOneCodeWhicheverComesFirst) {
     for (int b = 0; b < 3; ++b) {
       EXPECT_EQ(laws.code(a, b), laws.code(b, a));
       EXPECT_NE(laws.code(a, b), LawTable::kBonded);
-      EXPECT_EQ(laws.view().rows[LawView::kRow * laws.code(a, b) + LawView::Kn],
-                1e4 + 1e3 * (a + b));
+      EXPECT_EQ(laws.row(laws.code(a, b))[LinearSpring::Kn], 1e4 + 1e3 * (a + b));
     }
   }
 }
 
 TEST(LawTable, NullLawActsNowhere) {
   const LawTable laws(table_of(2));
-  for (const auto f :
-       {LawView::Kn, LawView::Kt, LawView::InverseKt, LawView::Mu, LawView::Cn, LawView::Ct}) {
+  for (const auto f : {LinearSpring::Kn, LinearSpring::Kt, LinearSpring::InverseKt,
+                       LinearSpring::Mu, LinearSpring::Cn, LinearSpring::Ct}) {
     EXPECT_EQ(laws.view().rows[f], 0.0);
   }
 }
@@ -39,9 +38,9 @@ TEST(LawTable, ColumnsRepeatRowsAndEveryLaneHasTheCap) {
     const LawView view = laws.view();
     const double cap = no_tension ? 0.0 : std::numeric_limits<double>::infinity();
     for (int c = 0; c < LawView::kColumn; ++c)
-      EXPECT_EQ(view.columns[LawView::Cap * LawView::kColumn + c], cap);
+      EXPECT_EQ(view.columns[LinearSpring::Cap * LawView::kColumn + c], cap);
     for (int c = 0; c < view.size; ++c) {
-      for (int f = 0; f < LawView::kNumFields; ++f) {
+      for (int f = 0; f < LinearSpring::kNumFields; ++f) {
         EXPECT_EQ(view.columns[f * LawView::kColumn + c], view.rows[c * LawView::kRow + f]);
       }
     }
@@ -51,7 +50,7 @@ TEST(LawTable, ColumnsRepeatRowsAndEveryLaneHasTheCap) {
 TEST(LawTable, WithoutTangentialStiffnessHasNoInverse) {
   ContactTable table = table_of(1);
   table.constants[0].kt = 0.0;
-  EXPECT_EQ(LawTable(table).view().rows[LawView::kRow + LawView::InverseKt], 0.0);
+  EXPECT_EQ(LawTable(table).row(1)[LinearSpring::InverseKt], 0.0);
 }
 
 TEST(LawTable, RefusesMoreMaterialsThanCodes) {

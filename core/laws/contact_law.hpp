@@ -1,0 +1,97 @@
+#pragma once
+
+#include <algorithm>
+#include <utility>
+
+#include <barchan/core/kernels/pair_job.hpp>
+#include <barchan/core/laws/contact.hpp>
+#include <barchan/core/laws/history.hpp>
+#include <barchan/core/simd/scalar.hpp>
+
+namespace barchan {
+
+/// A law for disks, or for spheres.
+template <int Dim>
+struct ContactLawIn {
+  using State = PairState<simd::Scalar, Dim>;
+  using Force = PairForce<simd::Scalar, Dim>;
+
+  History history;
+  /// What acts on the first of a pair; zero where they do not touch.
+  /// @param row  constants; `history` is replaced by its value after the step
+  Force (*respond)(int level, const double* row, const State& pair, double dt, double* history);
+  double (*energy)(const double* row, double overlap, const double* history);  ///< elastic [J]
+};
+
+/// A law of contact as the program sees it, whichever it is. Made from the law's file alone.
+struct ContactLaw {
+  using Kernel = PairKernel (*)(VectorWidth width, int dim, int variant);
+
+  const char* name;
+  int num_fields;
+  bool (*is_common)(int field);  ///< the same in every row
+  ContactLawIn<2> disks;
+  ContactLawIn<3> spheres;
+  double (*stiffness)(const double* row);  ///< along the normal [N/m]
+  Kernel kernel;
+
+  template <int Dim>
+  [[nodiscard]] const ContactLawIn<Dim>& in() const {
+    if constexpr (Dim == 2)
+      return disks;
+    else
+      return spheres;
+  }
+};
+
+namespace detail {
+
+template <class Law, int... Field>
+typename Law::template Constants<simd::Scalar> constants_of(
+    const double* row, std::integer_sequence<int, Field...> /*fields*/) {
+  return {row[Field]...};
+}
+
+/// The compile-time level is looked for.
+template <class Law, int Dim, int Level = 0>
+PairForce<simd::Scalar, Dim> respond_at(int level, const double* row,
+                                        const PairState<simd::Scalar, Dim>& pair, double dt,
+                                        double* history) {
+  if constexpr (Level + 1 < Law::kNumLevels) {
+    if (level > Level) return respond_at<Law, Dim, Level + 1>(level, row, pair, dt, history);
+  }
+  constexpr int kLength = Law::template kHistory<Dim>.length;
+  static_assert(kLength <= kMostHistory);
+  const auto constants = constants_of<Law>(row, std::make_integer_sequence<int, Law::kNumFields>{});
+  double numbers[kLength];
+  std::copy_n(history, kLength, numbers);
+  typename Law::template Force<simd::Scalar, Dim> force{};
+  Law::template respond<simd::Scalar, Level>(constants, pair, dt, numbers, force);
+  std::copy_n(numbers, kLength, history);
+  return first_of(force);
+}
+
+template <class Law, int Dim>
+ContactLawIn<Dim> law_in() {
+  return {Law::template kHistory<Dim>, &respond_at<Law, Dim>,
+          [](const double* row, double overlap, const double* history) {
+            return Law::energy(row, Law::template kHistory<Dim>, overlap, history);
+          }};
+}
+
+}  // namespace detail
+
+/// @param kernel  gives the pair loops that are made for this law
+template <class Law>
+[[nodiscard]] ContactLaw contact_law(ContactLaw::Kernel kernel) {
+  static_assert(Law::kNumFields <= LawView::kRow);
+  return {Law::kName,
+          Law::kNumFields,
+          [](int field) { return Law::is_common(field); },
+          detail::law_in<Law, 2>(),
+          detail::law_in<Law, 3>(),
+          [](const double* row) { return Law::row_stiffness(row); },
+          kernel};
+}
+
+}  // namespace barchan

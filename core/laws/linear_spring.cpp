@@ -1,0 +1,131 @@
+#include <barchan/core/laws/linear_spring.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <barchan/core/restitution.hpp>
+
+namespace barchan {
+namespace {
+
+using Pair = LinearSpring::Pair;
+using Range = LinearSpring::Key::Range;
+
+/// Two springs, or dashpots, in series, each of which gives `a` with its like.
+double in_series(double a, double b) {
+  return a > 0.0 && b > 0.0 ? 2.0 / (1.0 / a + 1.0 / b) : 0.0;
+}
+
+bool is_zero(const Dashpot& dashpot) {
+  return dashpot.constant == 0.0 && dashpot.rate == 0.0 && dashpot.critical == 0.0;
+}
+
+/// None when both damp, but in ways that do not add up.
+std::optional<Dashpot> in_series(const Dashpot& a, const Dashpot& b) {
+  const Dashpot mixed{in_series(a.constant, b.constant), in_series(a.rate, b.rate),
+                      in_series(a.critical, b.critical)};
+  if (is_zero(mixed) && !is_zero(a) && !is_zero(b)) return std::nullopt;
+  return mixed;
+}
+
+std::string text_of(const Dashpot& d) {
+  if (d.rate > 0.0) return fmt::format("{:.4g} · m/s", d.rate);
+  if (d.critical > 0.0) return fmt::format("{:.4g} · √m", d.critical);
+  return fmt::format("{:.4g}", d.constant);
+}
+
+}  // namespace
+
+const std::array<LinearSpring::Key, LinearSpring::kNumKeys> LinearSpring::kKeys{{
+    {"normal_stiffness", Range::Positive, "N/m", "required", "normal spring",
+     [](Pair& p, double value) { p.kn = value; }},
+    {"tangential_stiffness", Range::NotNegative, "N/m", "0", "tangential spring",
+     [](Pair& p, double value) { p.kt = value; }},
+    {"normal_damping", Range::NotNegative, "N·s/m", "0", "dashpot coefficient",
+     [](Pair& p, double value) { p.cn.constant = value; }},
+    {"normal_damping_rate", Range::NotNegative, "1/s", "none",
+     "dashpot coefficient per effective mass of the pair, instead of `normal_damping`",
+     [](Pair& p, double value) { p.cn.rate = value; }, 2},
+    {"restitution", Range::Restitution, "", "none",
+     "ratio of normal speeds after and before a collision, instead of `normal_damping`",
+     [](Pair& p, double value) { p.restitution = value; }, 2},
+    {"tangential_damping", Range::NotNegative, "N·s/m", "0", "tangential dashpot",
+     [](Pair& p, double value) { p.ct.constant = value; }},
+    {"tangential_damping_rate", Range::NotNegative, "1/s", "none",
+     "per effective mass of the pair, instead of `tangential_damping`",
+     [](Pair& p, double value) { p.ct.rate = value; }, 5},
+    {"friction", Range::NotNegative, "", "0", "Coulomb coefficient",
+     [](Pair& p, double value) { p.mu = value; }},
+}};
+
+std::optional<Pair> LinearSpring::mix(const Pair& a, const Pair& b) {
+  const auto cn = in_series(a.cn, b.cn);
+  const auto ct = in_series(a.ct, b.ct);
+  const bool of_two_kinds = (a.restitution && !is_zero(b.cn)) || (b.restitution && !is_zero(a.cn));
+  if (!cn || !ct || of_two_kinds) return std::nullopt;
+  Pair mixed;
+  mixed.kn = in_series(a.kn, b.kn);
+  mixed.kt = in_series(a.kt, b.kt);
+  mixed.cn = *cn;
+  mixed.ct = *ct;
+  mixed.mu = std::min(a.mu, b.mu);
+  if (a.restitution && b.restitution)
+    mixed.restitution = std::sqrt(*a.restitution) * std::sqrt(*b.restitution);
+  mixed.is_mixed = true;
+  return mixed;
+}
+
+void LinearSpring::solve(Pair& p, bool no_tension) {
+  if (!p.restitution) return;
+  p.cn.critical = 2.0 * damping_ratio_for(*p.restitution, no_tension) * std::sqrt(p.kn);
+}
+
+std::array<std::string, 5> LinearSpring::texts(const Pair& p) {
+  return {fmt::format("{:.4g}", p.kn), fmt::format("{:.4g}", p.kt), text_of(p.cn), text_of(p.ct),
+          fmt::format("{:.4g}", p.mu)};
+}
+
+double LinearSpring::restitution(const Pair& p, double reduced_mass, bool no_tension) {
+  if (p.restitution) return *p.restitution;
+  return restitution_at(0.5 * dashpot(p, reduced_mass) / std::sqrt(p.kn * reduced_mass),
+                        no_tension);
+}
+
+double LinearSpring::coefficient(const Dashpot& dashpot, double reduced_mass) {
+  return dashpot.constant + dashpot.rate * reduced_mass +
+         dashpot.critical * std::sqrt(reduced_mass);
+}
+
+double LinearSpring::dashpot(const Pair& p, double reduced_mass) {
+  return coefficient(p.cn, reduced_mass);
+}
+
+double LinearSpring::largest_force(const Pair& p, double share, double overlap, double reduced_mass,
+                                   double speed) {
+  return (1.0 + p.mu) * std::max(share * p.kn * overlap, dashpot(p, reduced_mass) * speed);
+}
+
+// A null row keeps no spring: with mu = 0 every contact slides, and 0·inverse_kt = 0 clears it.
+void LinearSpring::write(const Pair& p, bool no_tension, double* row) {
+  row[Kn] = p.kn;
+  row[Kt] = p.kt;
+  row[InverseKt] = p.kt > 0.0 ? 1.0 / p.kt : 0.0;
+  row[Mu] = p.mu;
+  row[Cap] = no_tension ? 0.0 : std::numeric_limits<double>::infinity();
+  row[Cn] = p.cn.constant;
+  row[Ct] = p.ct.constant;
+  row[CnRate] = p.cn.rate;
+  row[CtRate] = p.ct.rate;
+  row[CnCritical] = p.cn.critical;
+  row[CtCritical] = p.ct.critical;
+}
+
+LinearSpring::Level LinearSpring::level(const Pair& p) {
+  if (p.cn.critical > 0.0 || p.ct.critical > 0.0) return Critical;
+  return p.cn.rate > 0.0 || p.ct.rate > 0.0 ? Rate : Constant;
+}
+
+}  // namespace barchan
