@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -201,19 +202,19 @@ void Simulation::EngineOf<Dim>::report_fast(int l) {
                         "time.step, more damping or less overlap would help"));
 }
 
-/// This rank alone knows, as with a fast particle.
+/// This rank alone knows, as with a fast particle. The strongest force is told first, and nothing
+/// else: what is near depends on the cuts.
 template <int Dim>
 void Simulation::EngineOf<Dim>::report_overload(int l) {
-  const Lane<Dim>& lane = strip_->lane(l);
-  const WorstOverlap worst = lane.worst_overlap();
+  const double force = strip_->lane(l).overload();
   throw StepError(
-      {step_, Overloaded, worst.id, 0},
+      {step_, Overloaded, -std::bit_cast<std::int64_t>(force), 0},
       fmt::format(
-          "in step {} the contacts of one particle press with {:.4g} N in all; sums of forces "
-          "are exact up to {:.4g} N, which follows from limits.overlap_error; the largest overlap "
-          "near it is now between {}; less overlap at the start or a smaller time.step would help, "
-          "or a larger limits.overlap_error",
-          step_, lane.overload(), world_.grain.most(), describe(worst)));
+          "in step {} the contacts of one particle press with {:.4g} N in all; sums of forces are "
+          "exact up to {:.4g} N, which follows from limits.overlap_error; less overlap at the "
+          "start or a smaller time.step would help, or a larger limits.overlap_error; a lower "
+          "limits.overlap_warning says earlier where overlaps are large",
+          step_, force, world_.grain.most()));
 }
 
 template <int Dim>

@@ -113,6 +113,34 @@ TEST(Culprit, OneThatGoesWildIsNamedInThatStepAlikeOnAnyNumberOfThreads) {
   }
 }
 
+/// Two pairs of disks overlap far apart, one more than the other: where cuts lie, and so what a lane
+/// has near it, does not tell.
+TEST(Culprit, MoreForceThanSumsCanHoldIsToldAlikeOnAnyNumberOfThreads) {
+  Scenario s = moving_walls();
+  s.model.limits = {1e-4, 1e-3};
+  s.set.particles.resize(4);
+  for (std::size_t p = 0; p < 4; ++p) {
+    ParticleData& particle = s.set.particles[p];
+    particle.id = static_cast<std::int64_t>(p) + 1;
+    particle.radius = 0.04;
+    particle.velocity = Vec3::Zero();
+    particle.position = Vec3(p < 2 ? 0.5 : 3.0, 0.6, 0.0);
+    particle.position.x() += p % 2 == 0 ? 0.0 : 0.066;
+  }
+  s.set.particles[1].radius = 0.01;  // a larger share of the smaller radius, but less force
+  s.set.particles[1].position.x() = 0.5455;
+  const auto error = [&](int threads) {
+    return error_of<StepError>([&] {
+      Simulation sim(s.model, s.set, MPI_COMM_SELF, with_threads(threads));
+      sim.run(20);
+    });
+  };
+  const std::string expected = error(1);
+  EXPECT_NE(expected.find("the contacts of one particle press with"), std::string::npos)
+      << expected;
+  for (const int threads : {2, 3}) EXPECT_EQ(error(threads), expected);
+}
+
 /// Where walls stand, lanes go on by themselves for some steps: the others may be ahead of the one
 /// that stops.
 TEST(Culprit, OneThatGoesWildInALaneThatIsBehindIsNamedInThatStep) {
