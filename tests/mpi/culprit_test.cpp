@@ -113,8 +113,8 @@ TEST(Culprit, OneThatGoesWildIsNamedInThatStepAlikeOnAnyNumberOfThreads) {
   }
 }
 
-/// Two pairs of disks overlap far apart, one more than the other: where cuts lie, and so what a lane
-/// has near it, does not tell.
+/// Two pairs of disks overlap far apart, one with more force, the other by a larger share. What a
+/// lane has near it depends on the cuts.
 TEST(Culprit, MoreForceThanSumsCanHoldIsToldAlikeOnAnyNumberOfThreads) {
   Scenario s = moving_walls();
   s.model.limits = {1e-4, 1e-3};
