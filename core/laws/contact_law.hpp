@@ -1,8 +1,8 @@
 #pragma once
 
 #include <algorithm>
-#include <utility>
 
+#include <barchan/core/kernels/law_view.hpp>
 #include <barchan/core/kernels/pair_job.hpp>
 #include <barchan/core/laws/contact.hpp>
 #include <barchan/core/laws/history.hpp>
@@ -46,12 +46,6 @@ struct ContactLaw {
 
 namespace detail {
 
-template <class Law, int... Field>
-typename Law::template Constants<simd::Scalar> constants_of(
-    const double* row, std::integer_sequence<int, Field...> /*fields*/) {
-  return {row[Field]...};
-}
-
 /// The compile-time level is looked for.
 template <class Law, int Dim, int Level = 0>
 PairForce<simd::Scalar, Dim> respond_at(int level, const double* row,
@@ -62,7 +56,8 @@ PairForce<simd::Scalar, Dim> respond_at(int level, const double* row,
   }
   constexpr int kLength = Law::template kHistory<Dim>.length;
   static_assert(kLength <= kMostHistory);
-  const auto constants = constants_of<Law>(row, std::make_integer_sequence<int, Law::kNumFields>{});
+  const auto constants = constants_from<Law, simd::Scalar>(
+      [row](auto field) { return row[decltype(field)::place]; }, FieldsOf<Law>{});
   double numbers[kLength];
   std::copy_n(history, kLength, numbers);
   typename Law::template Force<simd::Scalar, Dim> force{};

@@ -20,7 +20,7 @@ build_part() {
   shift
   if command -v ccache > /dev/null; then launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache); fi
   cmake -S "$source" -B "$part" -G Ninja -DBARCHAN_BUILD_SANITIZED=ON -DBARCHAN_BUILD_TESTS=OFF -DBARCHAN_BUILD_COMMAND=OFF \
-    -DBARCHAN_BUILD_BENCH=OFF -DBARCHAN_INSTALL=OFF -DBARCHAN_WERROR=OFF "${launcher[@]}" "$@" > "$work/output" || { cat "$work/output"; exit 1; }
+    -DBARCHAN_BUILD_BENCH=OFF -DBARCHAN_INSTALL=OFF "${launcher[@]}" "$@" > "$work/output" || { cat "$work/output"; exit 1; }
   cmake --build "$part" --target sanitized_part --parallel "$(nproc)" > "$work/output" || { tail -40 "$work/output"; exit 1; }
   echo "build: $SECONDS s"
   cd "$work" || exit 1
