@@ -9,9 +9,9 @@
 #include <barchan/app/loaded_deck.hpp>
 #include <barchan/app/readable.hpp>
 #include <barchan/app/warning.hpp>
-#include <barchan/core/force_grain.hpp>
 #include <barchan/core/generators/check_walls.hpp>
-#include <barchan/core/mass.hpp>
+#include <barchan/core/kernels/force_grain.hpp>
+#include <barchan/core/model/mass.hpp>
 #include <barchan/tasks/forecast.hpp>
 #include <barchan/tasks/memory_estimate.hpp>
 #include <barchan/tasks/stability.hpp>

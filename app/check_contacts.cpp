@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include <barchan/app/readable.hpp>
-#include <barchan/core/mass.hpp>
+#include <barchan/core/model/mass.hpp>
 
 namespace barchan::app {
 namespace {

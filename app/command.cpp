@@ -7,8 +7,8 @@
 #include <barchan/app/commands.hpp>
 #include <barchan/app/signals.hpp>
 #include <barchan/app/verdict.hpp>
-#include <barchan/comm/launcher.hpp>
-#include <barchan/comm/mpi_session.hpp>
+#include <barchan/comm/base/launcher.hpp>
+#include <barchan/comm/base/mpi_session.hpp>
 
 namespace barchan::app {
 namespace {

@@ -9,7 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include <barchan/core/deck/nearest.hpp>
+#include <barchan/core/base/nearest.hpp>
 #include <barchan/tasks/results/run_summary.hpp>
 #include <barchan/tasks/simulation.hpp>
 

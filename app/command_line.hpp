@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <barchan/comm/probe.hpp>
+#include <barchan/comm/probe/probe.hpp>
 #include <barchan/tasks/run_options.hpp>
 
 namespace barchan::app {

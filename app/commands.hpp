@@ -3,7 +3,7 @@
 #include <string>
 
 #include <barchan/app/command_line.hpp>
-#include <barchan/comm/communicator.hpp>
+#include <barchan/comm/base/communicator.hpp>
 
 namespace barchan::app {
 

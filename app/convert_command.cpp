@@ -7,7 +7,7 @@
 #include <barchan/app/commands.hpp>
 #include <barchan/app/readable.hpp>
 #include <barchan/app/warning.hpp>
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/io/particle_file.hpp>
 
 namespace barchan::app {

@@ -8,7 +8,7 @@
 #include <barchan/app/loaded_deck.hpp>
 #include <barchan/app/readable.hpp>
 #include <barchan/app/run_view.hpp>
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/io/particle_file.hpp>
 #include <barchan/core/io/text_file.hpp>
 #include <barchan/core/io/vtp.hpp>

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <barchan/core/deck/deck.hpp>
-#include <barchan/core/model.hpp>
+#include <barchan/core/model/model.hpp>
 
 namespace barchan::app {
 

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include <barchan/app/verdict.hpp>
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/tasks/simulation.hpp>
 
 namespace barchan::app {

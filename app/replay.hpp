@@ -4,7 +4,7 @@
 
 #include <barchan/app/command_line.hpp>
 #include <barchan/app/loaded_deck.hpp>
-#include <barchan/comm/communicator.hpp>
+#include <barchan/comm/base/communicator.hpp>
 #include <barchan/tasks/simulation.hpp>
 
 namespace barchan::app {

@@ -5,7 +5,7 @@
 
 #include <barchan/app/verdict.hpp>
 #include <barchan/app/warning.hpp>
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 
 namespace fs = std::filesystem;
 

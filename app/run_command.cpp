@@ -11,14 +11,14 @@
 #include <barchan/app/signals.hpp>
 #include <barchan/app/summary_table.hpp>
 #include <barchan/app/verdict.hpp>
-#include <barchan/comm/leftovers.hpp>
-#include <barchan/comm/watchdog.hpp>
+#include <barchan/comm/base/leftovers.hpp>
+#include <barchan/comm/base/watchdog.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/checkpoint/checkpoint_folder.hpp>
-#include <barchan/core/error.hpp>
 #include <barchan/core/io/text_file.hpp>
+#include <barchan/tasks/agree.hpp>
 #include <barchan/tasks/exchange_setup.hpp>
 #include <barchan/tasks/forecast.hpp>
-#include <barchan/tasks/results/agree.hpp>
 #include <barchan/tasks/results/folder_claim.hpp>
 #include <barchan/tasks/results/run_results.hpp>
 

@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <barchan/app/readable.hpp>
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/io/text_file.hpp>
 
 namespace barchan::app {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <barchan/core/model.hpp>
+#include <barchan/core/model/model.hpp>
 #include <barchan/tasks/results/run_folder.hpp>
 #include <barchan/tasks/results/run_summary.hpp>
 

@@ -8,10 +8,10 @@
 #include <thread>
 
 #include <barchan/app/command_line.hpp>
-#include <barchan/comm/first_to_fail.hpp>
-#include <barchan/comm/watchdog.hpp>
-#include <barchan/core/error.hpp>
-#include <barchan/tasks/results/agree.hpp>
+#include <barchan/comm/base/first_to_fail.hpp>
+#include <barchan/comm/base/watchdog.hpp>
+#include <barchan/core/base/error.hpp>
+#include <barchan/tasks/agree.hpp>
 #include <barchan/tasks/stop_request.hpp>
 
 namespace barchan::app {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include <barchan/comm/communicator.hpp>
+#include <barchan/comm/base/communicator.hpp>
 
 namespace barchan::app {
 

@@ -1,6 +1,6 @@
 # A layer is a folder and a static library barchan_LAYER. It sees its own headers and those of the layers that it
 # links, nothing else: each layer has an include root of its own in the build folder, which holds one link, so
-# that `#include <barchan/core/vec.hpp>` reads the same in the tree and installed.
+# that `#include <barchan/core/base/vec.hpp>` reads the same in the tree and installed.
 set(BARCHAN_LAYERS "")
 
 function(barchan_link_headers layer)

@@ -8,12 +8,12 @@
 
 #include <fmt/format.h>
 
-#include <barchan/comm/thread_level.hpp>
-#include <barchan/core/bytes.hpp>
+#include <barchan/comm/base/thread_level.hpp>
+#include <barchan/core/base/bytes.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/checkpoint/state.hpp>
-#include <barchan/core/digest.hpp>
-#include <barchan/core/error.hpp>
-#include <barchan/core/validate.hpp>
+#include <barchan/core/model/digest.hpp>
+#include <barchan/core/model/validate.hpp>
 
 namespace barchan {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include <barchan/comm/communicator.hpp>
-#include <barchan/core/model.hpp>
+#include <barchan/comm/base/communicator.hpp>
+#include <barchan/core/model/model.hpp>
 #include <barchan/tasks/run_options.hpp>
 
 namespace barchan {

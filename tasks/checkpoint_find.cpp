@@ -1,11 +1,11 @@
 #include <filesystem>
 
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/checkpoint/checkpoint_folder.hpp>
 #include <barchan/core/checkpoint/durable.hpp>
-#include <barchan/core/error.hpp>
+#include <barchan/tasks/agree.hpp>
 #include <barchan/tasks/checkpoint_load.hpp>
 #include <barchan/tasks/checkpoint_read.hpp>
-#include <barchan/tasks/results/agree.hpp>
 
 namespace fs = std::filesystem;
 

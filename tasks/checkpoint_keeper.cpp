@@ -13,9 +13,9 @@
 
 #include <fmt/format.h>
 
-#include <barchan/comm/mpi_session.hpp>
+#include <barchan/comm/base/mpi_session.hpp>
 #include <barchan/core/checkpoint/durable.hpp>
-#include <barchan/tasks/results/agree.hpp>
+#include <barchan/tasks/agree.hpp>
 
 namespace barchan {
 namespace {

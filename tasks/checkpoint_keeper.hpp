@@ -7,10 +7,10 @@
 #include <thread>
 #include <vector>
 
-#include <barchan/comm/reduction.hpp>
+#include <barchan/comm/base/reduction.hpp>
 #include <barchan/core/checkpoint/checkpoint_folder.hpp>
-#include <barchan/core/checkpoint/share.hpp>
-#include <barchan/core/model.hpp>
+#include <barchan/core/model/model.hpp>
+#include <barchan/core/particles/share.hpp>
 
 namespace barchan {
 

@@ -5,17 +5,17 @@
 
 #include <fmt/format.h>
 
-#include <barchan/comm/strips.hpp>
-#include <barchan/core/bonds.hpp>
-#include <barchan/core/error.hpp>
-#include <barchan/core/exact_sum.hpp>
-#include <barchan/core/fields.hpp>
+#include <barchan/comm/topology/strips.hpp>
+#include <barchan/core/base/error.hpp>
+#include <barchan/core/base/exact_sum.hpp>
 #include <barchan/core/laws/laws.hpp>
-#include <barchan/core/layout.hpp>
+#include <barchan/core/links/bonds.hpp>
+#include <barchan/core/links/wall_shape.hpp>
+#include <barchan/core/particles/fields.hpp>
+#include <barchan/core/particles/layout.hpp>
 #include <barchan/core/simd/scalar.hpp>
-#include <barchan/core/wall_shape.hpp>
+#include <barchan/tasks/agree.hpp>
 #include <barchan/tasks/checkpoint_read.hpp>
-#include <barchan/tasks/results/agree.hpp>
 #include <barchan/tasks/strip_plan.hpp>
 
 namespace barchan {

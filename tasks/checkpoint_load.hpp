@@ -4,11 +4,11 @@
 #include <string>
 #include <vector>
 
-#include <barchan/comm/communicator.hpp>
+#include <barchan/comm/base/communicator.hpp>
 #include <barchan/core/checkpoint/manifest.hpp>
-#include <barchan/core/checkpoint/share.hpp>
 #include <barchan/core/checkpoint/state.hpp>
-#include <barchan/core/grid.hpp>
+#include <barchan/core/particles/share.hpp>
+#include <barchan/core/search/grid.hpp>
 
 namespace barchan {
 

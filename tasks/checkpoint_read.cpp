@@ -1,8 +1,8 @@
 #include <barchan/tasks/checkpoint_read.hpp>
 
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/checkpoint/checkpoint_folder.hpp>
-#include <barchan/core/error.hpp>
-#include <barchan/tasks/results/agree.hpp>
+#include <barchan/tasks/agree.hpp>
 
 namespace barchan {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <barchan/comm/communicator.hpp>
+#include <barchan/comm/base/communicator.hpp>
 #include <barchan/core/checkpoint/manifest.hpp>
 #include <barchan/core/checkpoint/rank_file.hpp>
 

@@ -9,9 +9,9 @@
 
 #include <fmt/format.h>
 
-#include <barchan/comm/clock.hpp>
-#include <barchan/comm/mpi_session.hpp>
-#include <barchan/core/error.hpp>
+#include <barchan/comm/base/clock.hpp>
+#include <barchan/comm/base/mpi_session.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/generators/check_walls.hpp>
 #include <barchan/tasks/stop_request.hpp>
 

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/tasks/engine.hpp>
 #include <barchan/tasks/stop_request.hpp>
 #include <barchan/tasks/strip_plan.hpp>

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <barchan/core/error.hpp>
-#include <barchan/core/vec_text.hpp>
+#include <barchan/core/base/error.hpp>
+#include <barchan/core/base/vec_text.hpp>
 #include <barchan/tasks/engine.hpp>
 
 // What a run says that goes wrong or must let particles go: with id, position, velocity and

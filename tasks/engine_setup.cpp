@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include <barchan/comm/strips.hpp>
-#include <barchan/core/error.hpp>
+#include <barchan/comm/topology/strips.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/generators/check_walls.hpp>
 #include <barchan/core/generators/make_particles.hpp>
 #include <barchan/tasks/engine.hpp>

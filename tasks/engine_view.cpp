@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 
-#include <barchan/core/row_particle.hpp>
+#include <barchan/core/particles/row_particle.hpp>
 #include <barchan/tasks/engine.hpp>
 
 // What callers see of a simulation between steps.

@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
+#include <barchan/tasks/agree.hpp>
 #include <barchan/tasks/engine.hpp>
-#include <barchan/tasks/results/agree.hpp>
 
 // What can go wrong in a run: noticed with the checks of the rebuild schedule, at no message more,
 // and told with the particles that it is about (engine_report.cpp). Only a run that ends or a

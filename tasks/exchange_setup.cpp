@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-#include <barchan/comm/make_exchange.hpp>
-#include <barchan/comm/recorded_exchange.hpp>
-#include <barchan/core/error.hpp>
+#include <barchan/comm/exchanges/make_exchange.hpp>
+#include <barchan/comm/wrappers/recorded_exchange.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/tasks/simulation.hpp>
 
 namespace barchan {

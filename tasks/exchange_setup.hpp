@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <barchan/comm/auto_exchange.hpp>
+#include <barchan/comm/probe/auto_exchange.hpp>
 #include <barchan/tasks/run_options.hpp>
 #include <barchan/tasks/strip.hpp>
 

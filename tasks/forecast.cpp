@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include <barchan/core/error.hpp>
-#include <barchan/core/mass.hpp>
+#include <barchan/core/base/error.hpp>
+#include <barchan/core/model/mass.hpp>
 
 namespace barchan {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include <barchan/core/model.hpp>
+#include <barchan/core/model/model.hpp>
 
 // What a deck's numbers foretell, beside the stable step (stability.hpp). All pure and the same on
 // every rank.
@@ -18,7 +18,7 @@ namespace barchan {
 
 /// Where particles or plates would be so fast that a step may skip contacts: from the speeds of the
 /// start, and from a free fall to the end of the domain. Two that move by more than the smaller
-/// radius against each other in a step end a run when they pass each other (core/passage.hpp).
+/// radius against each other in a step end a run when they pass each other (brick/passage.hpp).
 [[nodiscard]] std::vector<std::string> speed_warnings(const Model& model,
                                                       const ParticleSet& particles);
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <barchan/comm/communicator.hpp>
+#include <barchan/comm/base/communicator.hpp>
 #include <barchan/tasks/step_tasks.hpp>
 
 namespace barchan {

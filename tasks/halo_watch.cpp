@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include <barchan/comm/watchdog.hpp>
+#include <barchan/comm/base/watchdog.hpp>
 
 namespace barchan {
 

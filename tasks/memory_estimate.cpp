@@ -3,7 +3,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include <barchan/core/lane.hpp>
+#include <barchan/core/brick/lane.hpp>
 #include <barchan/tasks/forecast.hpp>
 #include <barchan/tasks/strip_plan.hpp>
 #include <barchan/tasks/world_setup.hpp>

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include <barchan/core/model.hpp>
+#include <barchan/core/model/model.hpp>
 
 namespace barchan {
 

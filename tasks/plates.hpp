@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include <barchan/comm/reduction.hpp>
-#include <barchan/core/walls.hpp>
+#include <barchan/comm/base/reduction.hpp>
+#include <barchan/core/links/walls.hpp>
 
 namespace barchan {
 

@@ -3,7 +3,7 @@
 #include <exception>
 #include <utility>
 
-#include <barchan/comm/backoff.hpp>
+#include <barchan/comm/base/backoff.hpp>
 
 namespace barchan {
 

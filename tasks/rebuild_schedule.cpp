@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <barchan/comm/clock.hpp>
+#include <barchan/comm/base/clock.hpp>
 
 namespace barchan {
 namespace {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include <barchan/comm/reduction.hpp>
-#include <barchan/core/departure.hpp>
+#include <barchan/comm/base/reduction.hpp>
+#include <barchan/core/brick/departure.hpp>
 
 namespace barchan {
 

@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
-#include <barchan/comm/tape.hpp>
-#include <barchan/core/departure.hpp>
-#include <barchan/core/model.hpp>
+#include <barchan/comm/base/tape.hpp>
+#include <barchan/core/brick/departure.hpp>
+#include <barchan/core/model/model.hpp>
 
 namespace barchan {
 

@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
-#include <barchan/comm/make_exchange.hpp>
-#include <barchan/comm/mpi_session.hpp>
-#include <barchan/core/error.hpp>
-#include <barchan/core/validate.hpp>
+#include <barchan/comm/base/mpi_session.hpp>
+#include <barchan/comm/exchanges/make_exchange.hpp>
+#include <barchan/core/base/error.hpp>
+#include <barchan/core/model/validate.hpp>
 #include <barchan/tasks/check_input.hpp>
 #include <barchan/tasks/engine.hpp>
 #include <barchan/tasks/graph_dot.hpp>

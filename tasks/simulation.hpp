@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include <barchan/comm/auto_exchange.hpp>
-#include <barchan/comm/communicator.hpp>
-#include <barchan/comm/exchange.hpp>
-#include <barchan/core/departure.hpp>
-#include <barchan/core/measures.hpp>
-#include <barchan/core/model.hpp>
-#include <barchan/core/walls.hpp>
+#include <barchan/comm/base/communicator.hpp>
+#include <barchan/comm/probe/auto_exchange.hpp>
+#include <barchan/comm/slots/exchange.hpp>
+#include <barchan/core/brick/departure.hpp>
+#include <barchan/core/brick/measures.hpp>
+#include <barchan/core/links/walls.hpp>
+#include <barchan/core/model/model.hpp>
 #include <barchan/tasks/run_options.hpp>
 
 namespace barchan {
@@ -70,7 +70,7 @@ struct LeftDomain {
 /// The state is the same to the bit for any number of ranks, threads and any exchange. The library
 /// works on a communicator of its own and prints nothing. It ends the program in one case, with a
 /// line on stderr: this rank cannot come back from a call of MPI, since another rank hangs
-/// (comm/call_watch.hpp).
+/// (comm/base/call_watch.hpp).
 /// Construction, run, measure, digest, destruction and members documented as collective are
 /// collective; the rest is local. One thread at a time.
 class Simulation {

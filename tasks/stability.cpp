@@ -12,10 +12,10 @@
 
 #include <Eigen/Eigenvalues>
 
-#include <barchan/core/bonds.hpp>
-#include <barchan/core/error.hpp>
-#include <barchan/core/layout.hpp>
-#include <barchan/core/mass.hpp>
+#include <barchan/core/base/error.hpp>
+#include <barchan/core/links/bonds.hpp>
+#include <barchan/core/model/mass.hpp>
+#include <barchan/core/particles/layout.hpp>
 
 namespace barchan {
 namespace {

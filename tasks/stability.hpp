@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <barchan/core/model.hpp>
+#include <barchan/core/model/model.hpp>
 
 namespace barchan {
 

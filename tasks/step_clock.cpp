@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <barchan/comm/clock.hpp>
+#include <barchan/comm/base/clock.hpp>
 
 namespace barchan {
 

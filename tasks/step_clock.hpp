@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <deque>
 
-#include <barchan/comm/neighbours.hpp>
+#include <barchan/comm/topology/neighbours.hpp>
 #include <barchan/tasks/trace.hpp>
 
 namespace barchan {

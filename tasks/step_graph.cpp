@@ -6,7 +6,7 @@
 #include <string>
 #include <thread>
 
-#include <barchan/comm/clock.hpp>
+#include <barchan/comm/base/clock.hpp>
 
 namespace barchan {
 namespace {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include <barchan/core/lane.hpp>
+#include <barchan/core/brick/lane.hpp>
 #include <barchan/tasks/halo_watch.hpp>
 #include <barchan/tasks/run_options.hpp>
 #include <barchan/tasks/step_clock.hpp>

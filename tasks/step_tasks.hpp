@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <barchan/comm/neighbours.hpp>
+#include <barchan/comm/topology/neighbours.hpp>
 
 namespace barchan {
 

@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
-#include <barchan/comm/clock.hpp>
-#include <barchan/comm/links.hpp>
-#include <barchan/comm/watchdog.hpp>
-#include <barchan/core/error.hpp>
+#include <barchan/comm/base/clock.hpp>
+#include <barchan/comm/base/watchdog.hpp>
+#include <barchan/comm/topology/links.hpp>
+#include <barchan/core/base/error.hpp>
 
 namespace barchan {
 template <int Dim>

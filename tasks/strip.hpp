@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include <barchan/comm/communicator.hpp>
-#include <barchan/comm/exchange.hpp>
-#include <barchan/comm/reduction.hpp>
-#include <barchan/core/checkpoint/share.hpp>
-#include <barchan/core/lane.hpp>
+#include <barchan/comm/base/communicator.hpp>
+#include <barchan/comm/base/reduction.hpp>
+#include <barchan/comm/slots/exchange.hpp>
+#include <barchan/core/brick/lane.hpp>
+#include <barchan/core/particles/share.hpp>
 #include <barchan/tasks/trace.hpp>
 
 namespace barchan {

@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
-#include <barchan/comm/strips.hpp>
-#include <barchan/core/error.hpp>
+#include <barchan/comm/topology/strips.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/generators/close_pairs.hpp>
-#include <barchan/core/grid.hpp>
+#include <barchan/core/search/grid.hpp>
 #include <barchan/tasks/forecast.hpp>
 
 namespace barchan {

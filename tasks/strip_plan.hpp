@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <barchan/core/model.hpp>
+#include <barchan/core/model/model.hpp>
 
 namespace barchan {
 

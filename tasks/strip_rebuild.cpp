@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <barchan/comm/clock.hpp>
-#include <barchan/comm/strips.hpp>
-#include <barchan/comm/tape.hpp>
-#include <barchan/comm/watchdog.hpp>
-#include <barchan/core/error.hpp>
+#include <barchan/comm/base/clock.hpp>
+#include <barchan/comm/base/tape.hpp>
+#include <barchan/comm/base/watchdog.hpp>
+#include <barchan/comm/topology/strips.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/tasks/strip.hpp>
 
 namespace barchan {

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include <barchan/comm/strips.hpp>
+#include <barchan/comm/topology/strips.hpp>
 #include <barchan/tasks/strip.hpp>
 
 // The strip of one rank at the start of a run. Every rank has all particles at hand and keeps its

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include <barchan/comm/thread_level.hpp>
+#include <barchan/comm/base/thread_level.hpp>
 
 namespace barchan {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <barchan/comm/communicator.hpp>
+#include <barchan/comm/base/communicator.hpp>
 
 namespace barchan {
 

@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
 
-#include <barchan/comm/clock_offset.hpp>
+#include <barchan/comm/topology/clock_offset.hpp>
 #include <barchan/core/io/text_file.hpp>
-#include <barchan/tasks/results/agree.hpp>
+#include <barchan/tasks/agree.hpp>
 
 namespace barchan {
 namespace {

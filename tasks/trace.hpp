@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <barchan/comm/clock.hpp>
-#include <barchan/comm/communicator.hpp>
-#include <barchan/comm/neighbours.hpp>
+#include <barchan/comm/base/clock.hpp>
+#include <barchan/comm/base/communicator.hpp>
+#include <barchan/comm/topology/neighbours.hpp>
 
 namespace barchan {
 

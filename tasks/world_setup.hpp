@@ -2,9 +2,9 @@
 
 #include <cstdint>
 
+#include <barchan/core/brick/world.hpp>
 #include <barchan/core/kernels/kernel_set.hpp>
-#include <barchan/core/model.hpp>
-#include <barchan/core/world.hpp>
+#include <barchan/core/model/model.hpp>
 
 namespace barchan {
 

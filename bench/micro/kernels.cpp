@@ -1,6 +1,6 @@
 #include <string>
 
-#include <barchan/core/fields.hpp>
+#include <barchan/core/particles/fields.hpp>
 #include <barchan/core/simd/denormals.hpp>
 
 #include "law_cost.hpp"

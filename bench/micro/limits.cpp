@@ -1,7 +1,7 @@
 #include <string>
 
 #include <barchan/core/kernels/kernel_set.hpp>
-#include <barchan/core/layout.hpp>
+#include <barchan/core/particles/layout.hpp>
 
 #include "peak.hpp"
 #include "suites.hpp"

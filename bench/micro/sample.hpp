@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <memory>
 
-#include <barchan/core/lane.hpp>
+#include <barchan/core/brick/lane.hpp>
 
 namespace barchan::micro {
 

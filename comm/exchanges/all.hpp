@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include <barchan/comm/slot_exchange.hpp>
+#include <barchan/comm/slots/slot_exchange.hpp>
 
 // One factory per exchange, each defined in the file of its name; make_exchange.cpp lists them.
 

@@ -1,6 +1,6 @@
+#include <barchan/comm/base/mpi_error.hpp>
 #include <barchan/comm/exchanges/all.hpp>
-#include <barchan/comm/mpi_error.hpp>
-#include <barchan/comm/one_sided_exchange.hpp>
+#include <barchan/comm/slots/one_sided_exchange.hpp>
 
 namespace barchan {
 namespace {

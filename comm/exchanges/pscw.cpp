@@ -1,10 +1,10 @@
 #include <exception>
 
-#include <barchan/comm/call_watch.hpp>
+#include <barchan/comm/base/call_watch.hpp>
+#include <barchan/comm/base/mpi_error.hpp>
+#include <barchan/comm/base/mpi_session.hpp>
+#include <barchan/comm/base/window.hpp>
 #include <barchan/comm/exchanges/all.hpp>
-#include <barchan/comm/mpi_error.hpp>
-#include <barchan/comm/mpi_session.hpp>
-#include <barchan/comm/window.hpp>
 
 namespace barchan {
 namespace {

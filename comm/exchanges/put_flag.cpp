@@ -1,5 +1,5 @@
 #include <barchan/comm/exchanges/all.hpp>
-#include <barchan/comm/one_sided_exchange.hpp>
+#include <barchan/comm/slots/one_sided_exchange.hpp>
 
 namespace barchan {
 namespace {

@@ -4,7 +4,7 @@
 #include <xxhash.h>
 
 #include <barchan/comm/exchanges/all.hpp>
-#include <barchan/comm/one_sided_exchange.hpp>
+#include <barchan/comm/slots/one_sided_exchange.hpp>
 
 namespace barchan {
 namespace {

@@ -1,7 +1,7 @@
+#include <barchan/comm/base/mpi_error.hpp>
+#include <barchan/comm/base/watchdog.hpp>
 #include <barchan/comm/exchanges/all.hpp>
-#include <barchan/comm/mpi_error.hpp>
-#include <barchan/comm/two_sided_exchange.hpp>
-#include <barchan/comm/watchdog.hpp>
+#include <barchan/comm/slots/two_sided_exchange.hpp>
 
 namespace barchan {
 namespace {

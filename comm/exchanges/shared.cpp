@@ -1,10 +1,10 @@
 #include <atomic>
 
+#include <barchan/comm/base/mpi_error.hpp>
+#include <barchan/comm/base/reduction.hpp>
+#include <barchan/comm/base/window.hpp>
 #include <barchan/comm/exchanges/all.hpp>
-#include <barchan/comm/mpi_error.hpp>
-#include <barchan/comm/reduction.hpp>
-#include <barchan/comm/slot_layout.hpp>
-#include <barchan/comm/window.hpp>
+#include <barchan/comm/slots/slot_layout.hpp>
 
 namespace barchan {
 namespace {

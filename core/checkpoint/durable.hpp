@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 
 // Files that are on the disk when a function returns, not only on their way to it.
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include <barchan/core/checkpoint/rank_file.hpp>
-#include <barchan/core/source_record.hpp>
+#include <barchan/core/model/source_record.hpp>
 
 namespace barchan {
 

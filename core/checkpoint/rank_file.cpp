@@ -11,9 +11,9 @@
 #include <memory>
 #include <new>
 
-#include <barchan/core/checkpoint/columns.hpp>
+#include <barchan/core/base/exact_sum.hpp>
 #include <barchan/core/checkpoint/durable.hpp>
-#include <barchan/core/exact_sum.hpp>
+#include <barchan/core/particles/share_columns.hpp>
 
 namespace barchan {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <barchan/core/checkpoint/share.hpp>
+#include <barchan/core/checkpoint/check_share.hpp>
 
 namespace barchan {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string_view>
 
-#include <barchan/core/bytes.hpp>
-#include <barchan/core/error.hpp>
-#include <barchan/core/world.hpp>
+#include <barchan/core/base/bytes.hpp>
+#include <barchan/core/base/error.hpp>
+#include <barchan/core/brick/world.hpp>
 
 namespace barchan {
 namespace {

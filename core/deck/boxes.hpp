@@ -1,7 +1,7 @@
 #pragma once
 
 #include <barchan/core/deck/table_reader.hpp>
-#include <barchan/core/particle_source.hpp>
+#include <barchan/core/model/particle_source.hpp>
 
 namespace barchan::deck {
 

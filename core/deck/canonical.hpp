@@ -3,7 +3,7 @@
 #include <vector>
 
 #include <barchan/core/deck/node.hpp>
-#include <barchan/core/source_record.hpp>
+#include <barchan/core/model/source_record.hpp>
 
 namespace barchan::deck {
 

@@ -9,7 +9,7 @@
 #include <barchan/core/deck/overrides.hpp>
 #include <barchan/core/deck/readers.hpp>
 #include <barchan/core/deck/table_reader.hpp>
-#include <barchan/core/validate.hpp>
+#include <barchan/core/model/validate.hpp>
 
 namespace barchan {
 

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include <barchan/core/model.hpp>
-#include <barchan/core/particle_source.hpp>
+#include <barchan/core/model/model.hpp>
+#include <barchan/core/model/particle_source.hpp>
 
 // Decks: TOML in, checked plain data out. docs/deck.md is the reference; schema.hpp lists every
 // key.

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 
 namespace barchan::deck {
 

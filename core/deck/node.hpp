@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 
 // The tree of a deck's text: every value knows where it stands. Only node.cpp knows the TOML
 // library.

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include <barchan/core/deck/readers.hpp>
-#include <barchan/core/validate.hpp>
+#include <barchan/core/model/validate.hpp>
 
 namespace barchan::deck {
 

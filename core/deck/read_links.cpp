@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/deck/values.hpp>
-#include <barchan/core/error.hpp>
 
 namespace barchan::deck {
 

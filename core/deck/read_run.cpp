@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
+#include <barchan/core/base/nearest.hpp>
 #include <barchan/core/deck/boxes.hpp>
-#include <barchan/core/deck/nearest.hpp>
 #include <barchan/core/deck/readers.hpp>
 
 namespace barchan::deck {

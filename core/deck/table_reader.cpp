@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include <barchan/core/deck/nearest.hpp>
+#include <barchan/core/base/nearest.hpp>
 #include <barchan/core/deck/not_modelled.hpp>
 #include <barchan/core/deck/values.hpp>
 

@@ -6,9 +6,9 @@
 #include <string_view>
 #include <vector>
 
+#include <barchan/core/base/vec.hpp>
 #include <barchan/core/deck/node.hpp>
 #include <barchan/core/deck/schema.hpp>
-#include <barchan/core/vec.hpp>
 
 namespace barchan::deck {
 

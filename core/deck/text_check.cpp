@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 
 namespace barchan::deck {
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <barchan/core/deck/nearest.hpp>
+#include <barchan/core/base/nearest.hpp>
 #include <barchan/core/deck/not_modelled.hpp>
 
 namespace barchan::deck {

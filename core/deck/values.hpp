@@ -4,9 +4,9 @@
 #include <string>
 #include <string_view>
 
+#include <barchan/core/base/vec.hpp>
 #include <barchan/core/deck/node.hpp>
 #include <barchan/core/deck/schema.hpp>
-#include <barchan/core/vec.hpp>
 
 // Single values of a deck, checked. Every function throws InputError at the value's place.
 

@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
+#include <barchan/core/base/vec_text.hpp>
 #include <barchan/core/generators/close_pairs.hpp>
 #include <barchan/core/generators/make_particles.hpp>
-#include <barchan/core/mass.hpp>
-#include <barchan/core/vec_text.hpp>
+#include <barchan/core/model/mass.hpp>
 
 namespace barchan {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
+#include <barchan/core/base/vec_text.hpp>
 #include <barchan/core/generators/make_particles.hpp>
-#include <barchan/core/grid.hpp>
-#include <barchan/core/vec_text.hpp>
-#include <barchan/core/wall_shape.hpp>
+#include <barchan/core/links/wall_shape.hpp>
+#include <barchan/core/search/grid.hpp>
 
 namespace barchan {
 namespace {

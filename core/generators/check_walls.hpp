@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include <barchan/core/model.hpp>
-#include <barchan/core/wall_shape.hpp>
+#include <barchan/core/links/wall_shape.hpp>
+#include <barchan/core/model/model.hpp>
 
 namespace barchan {
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include <barchan/core/io/particle_file.hpp>
-#include <barchan/core/model.hpp>
-#include <barchan/core/particle_source.hpp>
+#include <barchan/core/model/model.hpp>
+#include <barchan/core/model/particle_source.hpp>
 
 namespace barchan {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include <barchan/core/generators/close_pairs.hpp>
-#include <barchan/core/particle_source.hpp>
+#include <barchan/core/model/particle_source.hpp>
 
 namespace barchan {
 

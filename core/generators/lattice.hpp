@@ -3,7 +3,7 @@
 #include <vector>
 
 #include <barchan/core/generators/grain.hpp>
-#include <barchan/core/particle_source.hpp>
+#include <barchan/core/model/particle_source.hpp>
 
 namespace barchan {
 

@@ -2,8 +2,8 @@
 
 #include <cstddef>
 
-#include <barchan/core/model.hpp>
-#include <barchan/core/particle_source.hpp>
+#include <barchan/core/model/model.hpp>
+#include <barchan/core/model/particle_source.hpp>
 
 namespace barchan {
 

@@ -6,13 +6,13 @@
 
 #include <fmt/format.h>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
+#include <barchan/core/base/vec_text.hpp>
 #include <barchan/core/generators/file_particles.hpp>
 #include <barchan/core/generators/lattice.hpp>
 #include <barchan/core/generators/link_bonds.hpp>
 #include <barchan/core/generators/make_particles.hpp>
 #include <barchan/core/generators/packing.hpp>
-#include <barchan/core/vec_text.hpp>
 
 namespace barchan {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/generators/hole_volume.hpp>
 #include <barchan/core/generators/lattice.hpp>
 #include <barchan/core/generators/packing.hpp>

@@ -5,8 +5,8 @@
 #include <barchan/core/generators/grain.hpp>
 #include <barchan/core/generators/random.hpp>
 #include <barchan/core/generators/relax.hpp>
-#include <barchan/core/model.hpp>
-#include <barchan/core/particle_source.hpp>
+#include <barchan/core/model/model.hpp>
+#include <barchan/core/model/particle_source.hpp>
 
 namespace barchan {
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include <barchan/core/particle_source.hpp>
+#include <barchan/core/model/particle_source.hpp>
 
 namespace barchan {
 

@@ -5,7 +5,7 @@
 
 #include <barchan/core/generators/close_pairs.hpp>
 #include <barchan/core/generators/grain.hpp>
-#include <barchan/core/particle_source.hpp>
+#include <barchan/core/model/particle_source.hpp>
 
 namespace barchan {
 

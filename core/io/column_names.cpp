@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <barchan/core/deck/nearest.hpp>
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
+#include <barchan/core/base/nearest.hpp>
 
 namespace barchan {
 namespace {

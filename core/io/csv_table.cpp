@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 
 namespace barchan {
 namespace {

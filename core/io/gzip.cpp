@@ -6,7 +6,7 @@
 #include <limits>
 #include <new>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/io/text_file.hpp>
 
 namespace barchan {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/io/lammps_words.hpp>
 #include <barchan/core/io/particle_file.hpp>
 #include <barchan/core/io/plain_text.hpp>

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include <barchan/core/io/vtp.hpp>
-#include <barchan/core/model.hpp>
+#include <barchan/core/model/model.hpp>
 
 namespace barchan {
 

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/io/gzip.hpp>
 #include <barchan/core/io/text_file.hpp>
 #include <barchan/core/io/vtp.hpp>

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include <barchan/core/model.hpp>
-#include <barchan/core/particle_source.hpp>
+#include <barchan/core/model/model.hpp>
+#include <barchan/core/model/particle_source.hpp>
 
 namespace barchan {
 

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/io/column_names.hpp>
 #include <barchan/core/io/csv_table.hpp>
 #include <barchan/core/io/particle_columns.hpp>

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/io/particle_columns.hpp>
 #include <barchan/core/io/particle_file.hpp>
 #include <barchan/core/io/text_file.hpp>

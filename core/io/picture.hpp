@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include <barchan/core/vec.hpp>
+#include <barchan/core/base/vec.hpp>
 
 namespace barchan {
 

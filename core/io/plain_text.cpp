@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 
 namespace barchan {
 namespace {

@@ -8,7 +8,7 @@
 #include <png.h>
 #include <zlib.h>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/io/canvas.hpp>
 #include <barchan/core/io/text_file.hpp>
 

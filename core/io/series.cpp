@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/io/text_file.hpp>
 
 namespace barchan {

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 
 // Plain files: whole-file reading, line by line parsing with places for errors, writing that is
 // complete or absent.

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <utility>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/io/base64.hpp>
 #include <barchan/core/io/gzip.hpp>
 #include <barchan/core/io/text_file.hpp>

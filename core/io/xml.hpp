@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 
 namespace barchan {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/kernels/narrow_loop.hpp>
 #include <barchan/core/kernels/pair_loop.hpp>
 #include <barchan/core/kernels/row_loop.hpp>

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
+#include <barchan/core/kernels/law_table.hpp>
 #include <barchan/core/kernels/pair_job.hpp>
 #include <barchan/core/kernels/row_job.hpp>
 #include <barchan/core/kernels/search_job.hpp>
-#include <barchan/core/law_table.hpp>
 
 namespace barchan {
 

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include <barchan/core/kernels/row_job.hpp>
-#include <barchan/core/layout.hpp>
+#include <barchan/core/particles/layout.hpp>
 
 namespace barchan::kernels {
 

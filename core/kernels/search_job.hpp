@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
+#include <barchan/core/base/rows.hpp>
 #include <barchan/core/kernels/pair_job.hpp>
-#include <barchan/core/rows.hpp>
 
 namespace barchan {
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <barchan/core/restitution.hpp>
+#include <barchan/core/laws/restitution.hpp>
 
 namespace barchan {
 namespace {

@@ -11,7 +11,7 @@
 #include <exception>
 #include <numbers>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/tasks/simulation.hpp>
 
 namespace {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 
 namespace barchan {
 

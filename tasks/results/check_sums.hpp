@@ -1,6 +1,6 @@
 #pragma once
 
-#include <barchan/core/measures.hpp>
+#include <barchan/core/brick/measures.hpp>
 #include <barchan/tasks/simulation.hpp>
 
 namespace barchan {

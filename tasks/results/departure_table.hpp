@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include <barchan/core/departure.hpp>
+#include <barchan/core/brick/departure.hpp>
 
 namespace barchan {
 

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include <barchan/core/io/picture.hpp>
-#include <barchan/tasks/results/agree.hpp>
+#include <barchan/tasks/agree.hpp>
 
 namespace barchan {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/checkpoint/durable.hpp>
-#include <barchan/core/error.hpp>
 
 namespace fs = std::filesystem;
 

@@ -12,8 +12,8 @@
 
 #include <fmt/format.h>
 
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/checkpoint/checkpoint_folder.hpp>
-#include <barchan/core/error.hpp>
 
 namespace fs = std::filesystem;
 

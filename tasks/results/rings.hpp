@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <barchan/core/model.hpp>
-#include <barchan/core/particle_source.hpp>
+#include <barchan/core/model/model.hpp>
+#include <barchan/core/model/particle_source.hpp>
 #include <barchan/tasks/simulation.hpp>
 
 namespace barchan {

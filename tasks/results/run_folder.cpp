@@ -7,7 +7,7 @@
 #include <cstring>
 #include <filesystem>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 
 namespace fs = std::filesystem;
 

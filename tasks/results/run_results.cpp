@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <barchan/tasks/results/agree.hpp>
+#include <barchan/tasks/agree.hpp>
 #include <barchan/tasks/results/check_sums.hpp>
 #include <barchan/tasks/results/departure_table.hpp>
 #include <barchan/tasks/results/final_picture.hpp>

@@ -10,7 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <barchan/comm/mpi_session.hpp>
+#include <barchan/comm/base/mpi_session.hpp>
 
 namespace barchan {
 namespace {

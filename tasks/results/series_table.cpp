@@ -4,7 +4,7 @@
 #include <cctype>
 #include <set>
 
-#include <barchan/tasks/results/agree.hpp>
+#include <barchan/tasks/agree.hpp>
 
 namespace barchan {
 namespace {

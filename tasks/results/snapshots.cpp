@@ -9,7 +9,7 @@
 #include <barchan/core/io/bond_lines.hpp>
 #include <barchan/core/io/particle_columns.hpp>
 #include <barchan/core/io/particle_file.hpp>
-#include <barchan/tasks/results/agree.hpp>
+#include <barchan/tasks/agree.hpp>
 #include <barchan/tasks/results/own_files.hpp>
 
 namespace barchan {

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/checkpoint/checkpoint_folder.hpp>
-#include <barchan/core/error.hpp>
 #include <barchan/tasks/checkpoint_load.hpp>
 
 #include "running.hpp"

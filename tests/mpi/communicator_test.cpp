@@ -1,13 +1,13 @@
-#include <barchan/comm/communicator.hpp>
+#include <barchan/comm/base/communicator.hpp>
 
 #include <array>
 #include <string>
 
 #include <gtest/gtest.h>
 
-#include <barchan/comm/mpi_error.hpp>
-#include <barchan/comm/mpi_session.hpp>
-#include <barchan/comm/watchdog.hpp>
+#include <barchan/comm/base/mpi_error.hpp>
+#include <barchan/comm/base/mpi_session.hpp>
+#include <barchan/comm/base/watchdog.hpp>
 
 namespace barchan {
 namespace {

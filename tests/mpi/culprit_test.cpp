@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 
-#include <barchan/comm/make_exchange.hpp>
-#include <barchan/core/error.hpp>
+#include <barchan/comm/exchanges/make_exchange.hpp>
+#include <barchan/core/base/error.hpp>
 
 #include "running.hpp"
 #include "scenarios.hpp"

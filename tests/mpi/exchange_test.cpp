@@ -1,7 +1,7 @@
 // Values encode rank, side, step and index, so that a message that lands in the wrong place or step
 // shows.
 
-#include <barchan/comm/make_exchange.hpp>
+#include <barchan/comm/exchanges/make_exchange.hpp>
 
 #include <algorithm>
 #include <array>
@@ -13,8 +13,8 @@
 
 #include <gtest/gtest.h>
 
-#include <barchan/comm/watchdog.hpp>
-#include <barchan/core/error.hpp>
+#include <barchan/comm/base/watchdog.hpp>
+#include <barchan/core/base/error.hpp>
 
 namespace barchan {
 namespace {

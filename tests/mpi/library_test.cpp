@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 
 #include "running.hpp"
 #include "scenarios.hpp"

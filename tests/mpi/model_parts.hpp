@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include <barchan/core/model.hpp>
+#include <barchan/core/model/model.hpp>
 
 // What the models of tests are made of: materials, boxes, clouds, bonds.
 

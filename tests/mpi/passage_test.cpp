@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 
 #include "running.hpp"
 #include "scenarios.hpp"

@@ -1,14 +1,14 @@
-#include <barchan/comm/probe.hpp>
+#include <barchan/comm/probe/probe.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include <barchan/comm/auto_exchange.hpp>
-#include <barchan/comm/clock_offset.hpp>
-#include <barchan/comm/make_exchange.hpp>
-#include <barchan/comm/plain_put.hpp>
-#include <barchan/core/error.hpp>
+#include <barchan/comm/exchanges/make_exchange.hpp>
+#include <barchan/comm/probe/auto_exchange.hpp>
+#include <barchan/comm/slots/plain_put.hpp>
+#include <barchan/comm/topology/clock_offset.hpp>
+#include <barchan/core/base/error.hpp>
 
 namespace barchan {
 namespace {

@@ -1,4 +1,4 @@
-#include <barchan/comm/reduction.hpp>
+#include <barchan/comm/base/reduction.hpp>
 
 #include <array>
 #include <cmath>

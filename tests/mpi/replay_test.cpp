@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include <barchan/comm/tape.hpp>
-#include <barchan/core/error.hpp>
+#include <barchan/comm/base/tape.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/tasks/simulation.hpp>
 
 namespace barchan {

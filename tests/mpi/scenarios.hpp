@@ -10,9 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include <barchan/core/grid.hpp>
-#include <barchan/core/model.hpp>
-#include <barchan/core/wall_shape.hpp>
+#include <barchan/core/links/wall_shape.hpp>
+#include <barchan/core/model/model.hpp>
+#include <barchan/core/search/grid.hpp>
 #include <barchan/tasks/simulation.hpp>
 
 #include "model_parts.hpp"

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <barchan/core/mass.hpp>
+#include <barchan/core/model/mass.hpp>
 
 #include "physics_case.hpp"
 

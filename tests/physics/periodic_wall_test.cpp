@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 
 #include "physics_case.hpp"
 

@@ -14,7 +14,7 @@
 
 #include <fmt/format.h>
 
-#include <barchan/core/restitution.hpp>
+#include <barchan/core/laws/restitution.hpp>
 
 #include "physics_case.hpp"
 

@@ -8,7 +8,7 @@
 #include <exception>
 #include <string>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 #include <barchan/tasks/checkpoint_load.hpp>
 #include <barchan/tasks/simulation.hpp>
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 
 // What fuzzing targets have in common. A target calls a reader; an error that the reader promises
 // is as good as success, anything else ends the process.

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include <barchan/core/checkpoint/share.hpp>
-#include <barchan/core/lane.hpp>
-#include <barchan/core/model.hpp>
+#include <barchan/core/brick/lane.hpp>
+#include <barchan/core/model/model.hpp>
+#include <barchan/core/particles/share.hpp>
 
 #include "unit/core/lane_fixture.hpp"
 

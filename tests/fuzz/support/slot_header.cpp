@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include <barchan/comm/message.hpp>
+#include <barchan/comm/slots/message.hpp>
 
 namespace barchan::fuzz {
 

@@ -1,5 +1,5 @@
-#include <barchan/core/error.hpp>
-#include <barchan/core/vec.hpp>
+#include <barchan/core/base/error.hpp>
+#include <barchan/core/base/vec.hpp>
 
 int main() {
   try {

@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
-#include <barchan/core/force_grain.hpp>
+#include <barchan/core/kernels/force_grain.hpp>
 #include <barchan/core/kernels/kernel_set.hpp>
-#include <barchan/core/pair_list.hpp>
+#include <barchan/core/search/pair_list.hpp>
 
 #include "lane_fixture.hpp"
 

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include <barchan/core/checkpoint/share.hpp>
-#include <barchan/core/lane.hpp>
+#include <barchan/core/brick/lane.hpp>
+#include <barchan/core/particles/share.hpp>
 
 // Lanes side by side without ranks or threads: what passes between them goes from hand to hand.
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 
 namespace barchan {
 namespace {

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 
 #include <support/temporary_folder.hpp>
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include <barchan/core/bonds.hpp>
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
+#include <barchan/core/links/bonds.hpp>
 
 namespace barchan {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-#include <barchan/core/error.hpp>
+#include <barchan/core/base/error.hpp>
 
 namespace barchan {
 namespace {

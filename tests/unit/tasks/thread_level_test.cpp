@@ -7,8 +7,8 @@
 #include <memory>
 #include <thread>
 
+#include <barchan/core/base/error.hpp>
 #include <barchan/core/deck/deck.hpp>
-#include <barchan/core/error.hpp>
 #include <barchan/core/generators/make_particles.hpp>
 #include <barchan/tasks/simulation.hpp>
 

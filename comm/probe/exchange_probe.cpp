@@ -1,0 +1,208 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include <barchan/comm/base/clock.hpp>
+#include <barchan/comm/base/spin_work.hpp>
+#include <barchan/comm/base/watchdog.hpp>
+#include <barchan/comm/probe/probe.hpp>
+
+namespace barchan {
+namespace {
+
+constexpr std::array both_sides{Side::Left, Side::Right};
+constexpr int num_pieces = 8;
+// Ranks that have been apart meet in the first steps, which do not count.
+constexpr int num_first = 2, least_repetitions = 3, most_repetitions = 1000;
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double since(std::int64_t begin) {
+  return 1e-9 * static_cast<double>(now_ns() - begin);
+}
+
+SpinWork& work_of_this_thread() {
+  thread_local SpinWork work;
+  return work;
+}
+
+}  // namespace
+
+ExchangeProbe::ExchangeProbe(const Communicator& communicator, Neighbours neighbours,
+                             Exchange& exchange, std::size_t bytes, double budget_seconds)
+    : communicator_(communicator),
+      neighbours_(neighbours),
+      exchange_(exchange),
+      bytes_(bytes),
+      budget_(budget_seconds) {
+  exchange_.reserve(bytes);
+  communicator_.barrier();
+  for (int warm_up = 0; warm_up < 3; ++warm_up) (void)step({}, true);
+}
+
+double ExchangeProbe::slowest(double mine) const {
+  communicator_.allreduce_max(std::span(&mine, 1));
+  return mine;
+}
+
+double ExchangeProbe::both_ways() {
+  if (both_ways_ == 0.0) both_ways_ = slowest(median_step({}, true).whole);
+  return both_ways_;
+}
+
+// All ranks repeat equally often: blocks that grow, and after each a look whether the slowest has
+// time left. A machine that is busy with other work so takes longer for fewer repetitions, not for
+// all of them.
+template <class Once>
+void ExchangeProbe::repeat(Once&& once) {
+  const std::int64_t begin = now_ns();
+  int num_done = 0;
+  for (int block = num_first + least_repetitions; num_done < most_repetitions; block *= 2) {
+    for (int n = 0; n < block; ++n) once(num_done + n >= num_first);
+    num_done += block;
+    // Twice as many take twice as long.
+    if (slowest(since(begin)) * 2.0 > budget_) return;
+  }
+}
+
+void ExchangeProbe::send(Side side) {
+  if (!neighbours_.has(side)) return;
+  const auto message = exchange_.outgoing(side, bytes_);
+  if (!message.empty()) message.front() = message.back() = std::byte{1};
+  exchange_.send(side);
+}
+
+bool ExchangeProbe::poll_all() {
+  bool all = true;
+  for (const Side side : both_sides) {
+    if (neighbours_.has(side) && !exchange_.poll(side)) all = false;
+  }
+  return all;
+}
+
+ExchangeProbe::Step ExchangeProbe::step(const WorkPattern& work, bool polls) {
+  Step times;
+  const std::int64_t begin = now_ns();
+  const auto timed = [&times](auto&& call) {
+    const std::int64_t from = now_ns();
+    const bool result = call();
+    times.in_calls += since(from);
+    return result;
+  };
+  timed([&] {
+    for (const Side side : both_sides) send(side);
+    return true;
+  });
+  bool is_in = false;
+  for (int piece = 0; piece < work.num_chunks && work.seconds > 0.0; ++piece) {
+    work_of_this_thread().run(work.seconds / work.num_chunks);
+    if (polls && !is_in) is_in = timed([&] { return poll_all(); });
+  }
+  if (!is_in) {
+    wait_until([&] { return poll_all(); },
+               [&] {
+                 return "rank " + std::to_string(communicator_.rank()) + ": probe of exchange '" +
+                        std::string(exchange_.name()) + "', a message of " +
+                        std::to_string(bytes_) + " bytes";
+               });
+  }
+  timed([&] {
+    for (const Side side : both_sides) {
+      if (neighbours_.has(side)) exchange_.release(side);
+    }
+    return true;
+  });
+  times.whole = since(begin);
+  return times;
+}
+
+ExchangeProbe::Step ExchangeProbe::median_step(const WorkPattern& work, bool polls) {
+  std::vector<double> wholes, calls;
+  communicator_.barrier();
+  repeat([&](bool counts) {
+    const Step one = step(work, polls);
+    if (!counts) return;
+    wholes.push_back(one.whole);
+    calls.push_back(one.in_calls);
+  });
+  return {median(wholes), median(calls)};
+}
+
+double ExchangeProbe::median_work(const WorkPattern& work) {
+  std::vector<double> times;
+  repeat([&](bool counts) {
+    const std::int64_t begin = now_ns();
+    for (int piece = 0; piece < work.num_chunks; ++piece) {
+      work_of_this_thread().run(work.seconds / work.num_chunks);
+    }
+    if (counts) times.push_back(since(begin));
+  });
+  return median(times);
+}
+
+double ExchangeProbe::exposed(const WorkPattern& work) {
+  const double whole = median_step(work, true).whole;
+  return slowest(std::max(0.0, whole - median_work(work)));
+}
+
+double ExchangeProbe::bounce(Side side, bool begins) {
+  const std::int64_t begin = now_ns();
+  if (begins) send(side);
+  wait_until([&] { return exchange_.poll(side); },
+             [&] {
+               return "rank " + std::to_string(communicator_.rank()) + ": ping-pong by '" +
+                      std::string(exchange_.name()) + "'";
+             });
+  exchange_.release(side);
+  if (!begins) send(side);
+  return 0.5 * since(begin);
+}
+
+// Pairs of ranks (parity, parity + 1), (parity + 2, parity + 3), … at the same time.
+double ExchangeProbe::ping_pong(int parity) {
+  const bool begins = communicator_.rank() % 2 == parity;
+  const Side side = begins ? Side::Right : Side::Left;
+  const bool is_in_pair =
+      begins ? communicator_.rank() + 1 < communicator_.size() : communicator_.rank() > 0;
+  communicator_.barrier();
+  std::vector<double> times;
+  repeat([&](bool counts) {
+    if (!is_in_pair) return;
+    const double half = bounce(side, begins);
+    if (counts) times.push_back(half);
+  });
+  return begins && is_in_pair ? median(times) : 0.0;
+}
+
+double ExchangeProbe::half_round_trip() {
+  if (!exchange_.allows_uneven_sides()) return both_ways();
+  double longest = ping_pong(0);
+  if (communicator_.size() > 2) longest = std::max(longest, ping_pong(1));
+  return slowest(longest);
+}
+
+ExchangeCost ExchangeProbe::measure() {
+  ExchangeCost cost;
+  cost.both_ways = both_ways();
+  cost.half_round_trip = half_round_trip();
+  const WorkPattern same{both_ways_, num_pieces};
+  const Step overlapped = median_step(same, true);
+  const double exposed_same = overlapped.whole - median_work(same);
+  const WorkPattern longer{2.0 * both_ways_, 1};
+  const double exposed_alone = median_step(longer, false).whole - median_work(longer);
+  const auto share_hidden = [&](double exposed) {
+    return std::clamp(1.0 - slowest(exposed) / both_ways_, 0.0, 1.0);
+  };
+  cost.overlap = share_hidden(exposed_same);
+  cost.availability = share_hidden(exposed_alone);
+  cost.cpu = slowest(overlapped.in_calls);
+  return cost;
+}
+
+}  // namespace barchan

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include <barchan/comm/topology/neighbours.hpp>
+
+namespace barchan {
+
+/// Halo and bulk messages travel in lanes of their own: own slots, own sequence words, own numbers.
+enum class Lane : int { Halo = 0, Bulk = 1 };
+inline constexpr int num_lanes = 2;
+
+/// Message `number` (from 1) of a lane, to or from the neighbour at `side`.
+struct MessageKey {
+  Lane lane = Lane::Halo;
+  Side side = Side::Left;
+  std::uint64_t number = 0;
+
+  [[nodiscard]] constexpr int slot() const { return static_cast<int>(number & 1U); }
+  [[nodiscard]] constexpr int lane_side() const {
+    return 2 * static_cast<int>(lane) + static_cast<int>(side);
+  }
+};
+inline constexpr int num_lane_sides = 2 * num_lanes;
+
+/// A message in memory; only some exchanges have a trailer:
+///
+///     | header, 64 bytes | payload … | trailer, 8 bytes |
+struct MessageHeader {
+  std::uint64_t number = 0;
+  std::uint64_t bytes = 0;     ///< of payload
+  std::uint64_t checksum = 0;  ///< of the payload, where an exchange wants one
+  std::int64_t posted = 0;     ///< sender's steady clock [ns]
+  std::uint64_t has_more = 0;  ///< bulk: 1 = the sender has further fragments
+  std::uint64_t unused[3] = {};
+};
+static_assert(sizeof(MessageHeader) == 64);
+
+inline constexpr std::size_t header_bytes = sizeof(MessageHeader);
+inline constexpr std::size_t trailer_bytes =
+    64;  ///< room for a trailer that keeps slots apart by cache lines
+
+constexpr std::size_t round_to_line(std::size_t bytes) {
+  return (bytes + 63) / 64 * 64;
+}
+
+/// Memory that a slot takes for payloads of up to `capacity` bytes.
+constexpr std::size_t slot_bytes(std::size_t capacity) {
+  return header_bytes + round_to_line(capacity) + trailer_bytes;
+}
+
+void write_header(const MessageHeader& header, std::byte* message);
+[[nodiscard]] MessageHeader read_header(const std::byte* message);
+
+/// Holds a header that came in against what must have come. `at_most` is the room for the payload.
+/// Returns what is wrong with it, or nothing. Pure; any 64 bytes are safe.
+[[nodiscard]] std::string fault_of(const MessageHeader& header, std::uint64_t expected_number,
+                                   std::size_t at_most);
+
+/// "halo message 17 from rank 2 (left)"
+[[nodiscard]] std::string describe(const MessageKey& key, int neighbour);
+
+}  // namespace barchan

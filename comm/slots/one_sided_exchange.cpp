@@ -1,0 +1,32 @@
+#include <barchan/comm/slots/one_sided_exchange.hpp>
+
+namespace barchan {
+
+void OneSidedExchange::allocate(SlotCapacity capacity) {
+  layout_ = SlotLayout{capacity};
+  window_ = Window(communicator(), layout_.total());
+  window_.lock_all();
+  is_unified_ = window_.is_unified();
+  communicator().barrier();
+  for (const Lane lane : {Lane::Halo, Lane::Bulk}) {
+    for (const Side side : {Side::Left, Side::Right}) {
+      if (neighbours().has(side))
+        local_[index({lane, side, 0})].assign(slot_bytes(capacity.of(lane)), std::byte{});
+    }
+  }
+}
+
+void OneSidedExchange::put_word(const MessageKey& key, std::uint64_t value) {
+  std::uint64_t& origin = word_values_[index(key)];
+  origin = value;
+  window_.put(std::as_bytes(std::span(&origin, 1)), target(key),
+              layout_.word(SlotLayout::at_receiver(key)));
+}
+
+// A sync may be one more look at the network (osc/pt2pt), after every chunk.
+void OneSidedExchange::progress() {
+  SlotExchange::progress();
+  if (!is_unified_) window_.sync();
+}
+
+}  // namespace barchan

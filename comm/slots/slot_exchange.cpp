@@ -1,0 +1,257 @@
+#include <barchan/comm/slots/slot_exchange.hpp>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include <barchan/comm/base/clock.hpp>
+#include <barchan/comm/base/memory_left.hpp>
+#include <barchan/comm/base/mpi_error.hpp>
+#include <barchan/core/base/error.hpp>
+
+namespace barchan {
+namespace {
+
+constexpr std::array both_sides{Side::Left, Side::Right};
+constexpr std::size_t largest_fragment = std::size_t{16} << 20;
+
+double seconds_since(std::int64_t begin_ns) {
+  return 1e-9 * static_cast<double>(now_ns() - begin_ns);
+}
+
+}  // namespace
+
+SlotExchange::SlotExchange(const Communicator& communicator, Neighbours neighbours)
+    : communicator_(communicator.duplicate()), neighbours_(neighbours) {}
+
+void SlotExchange::start(SlotCapacity capacity) {
+  capacity_ = {round_to_line(capacity.halo),
+               round_to_line(std::max<std::size_t>(capacity.bulk, 64))};
+  require_room(capacity_);
+  allocate(capacity_);
+}
+
+// Memory that is not there is often granted, and missed only when it is touched.
+void SlotExchange::require_room(SlotCapacity capacity) const {
+  constexpr double slots = 8.0, most = 2147483647.0;  // both ways; one MPI call moves so much
+  const double halo = static_cast<double>(capacity.halo), bulk = static_cast<double>(capacity.bulk);
+  const double needed = slots * (halo + bulk);
+  const bool fits =
+      std::max(halo, bulk) + 128.0 <= most && needed * communicator_.node_size() <= memory_left();
+  if (communicator_.all_of(fits)) return;
+  throw InputError("messages of " + std::to_string(capacity.halo) + " bytes take " +
+                       std::to_string(static_cast<std::int64_t>(needed / 1048576.0)) +
+                       " MiB on every rank, which is more than this node has left or one MPI call "
+                       "moves (2 GiB)",
+                   "use smaller messages: more ranks, or for `barchan probe` a smaller --bytes");
+}
+
+void SlotExchange::reserve(std::size_t bytes) {
+  if (bytes <= capacity_.halo) return;
+  for (const Track& each : tracks_) {
+    if (each.sent != each.released || each.is_packing) {
+      throw std::logic_error("Exchange::reserve: a message is in flight");
+    }
+  }
+  require_room({bytes + bytes / 2, capacity_.bulk});
+  retire();
+  std::int64_t largest_bulk = static_cast<std::int64_t>(largest_bulk_);
+  communicator_.allreduce_max(std::span(&largest_bulk, 1));  // also: everybody has retired
+  const auto wanted_bulk =
+      std::min(static_cast<std::size_t>(largest_bulk) * 5 / 4, largest_fragment);
+  capacity_.halo = round_to_line(bytes + bytes / 2);
+  capacity_.bulk = round_to_line(std::max(capacity_.bulk, wanted_bulk));
+  tracks_ = {};
+  allocate(capacity_);
+  ++stats_.growths;
+}
+
+void SlotExchange::require_neighbour(Side side, const char* what) const {
+  if (!neighbours_.has(side)) [[unlikely]] {
+    throw std::logic_error(std::string(what) + ": there is no neighbour on the " + name_of(side));
+  }
+}
+
+std::byte* SlotExchange::open_outbox(Lane lane, Side side, std::size_t bytes) {
+  require_neighbour(side, "Exchange::outgoing");
+  Track& mine = track(lane, side);
+  if (mine.released < mine.sent) [[unlikely]] {
+    throw std::logic_error("Exchange::outgoing: the neighbour's message " +
+                           std::to_string(mine.sent) + " must be released before message " +
+                           std::to_string(mine.sent + 1) + " is packed");
+  }
+  if (bytes > capacity_.of(lane)) [[unlikely]] {
+    throw std::logic_error("Exchange::outgoing: " + std::to_string(bytes) +
+                           " bytes are more than the " + std::to_string(capacity_.of(lane)) +
+                           " reserved");
+  }
+  mine.outgoing_bytes = bytes;
+  mine.is_packing = true;
+  return outbox({lane, side, mine.sent + 1});
+}
+
+std::span<std::byte> SlotExchange::outgoing(Side side, std::size_t bytes) {
+  return {open_outbox(Lane::Halo, side, bytes) + header_bytes, bytes};
+}
+
+void SlotExchange::post_message(Lane lane, Side side, bool has_more) {
+  Track& mine = track(lane, side);
+  if (!mine.is_packing) [[unlikely]]
+    throw std::logic_error("Exchange::send: no message was packed");
+  const std::int64_t begin = now_ns();
+  MessageHeader header;
+  header.number = ++mine.sent;
+  header.bytes = mine.outgoing_bytes;
+  header.posted = begin;
+  header.has_more = has_more ? 1 : 0;
+  mine.is_packing = false;
+  post({lane, side, header.number}, header);
+  if (lane == Lane::Halo) halo_times_[index_of(side)].sent = begin;
+}
+
+void SlotExchange::send(Side side) {
+  post_message(Lane::Halo, side, false);
+  ++stats_.halo_messages;
+  stats_.halo_bytes += track(Lane::Halo, side).outgoing_bytes;
+}
+
+bool SlotExchange::look_for(Lane lane, Side side) {
+  if (!neighbours_.has(side)) return false;
+  Track& mine = track(lane, side);
+  if (mine.is_in) return true;
+  const MessageKey key{lane, side, mine.released + 1};
+  const std::byte* message = arrived(key);
+  if (message == nullptr) return false;
+  accept(key, message);
+  return true;
+}
+
+void SlotExchange::accept(const MessageKey& key, const std::byte* message) {
+  Track& mine = track(key.lane, key.side);
+  mine.header = read_header(message);
+  const std::string fault = fault_of(mine.header, key.number, capacity_.of(key.lane));
+  if (!fault.empty()) [[unlikely]] {
+    throw RunError("rank " + std::to_string(communicator_.rank()) + ": " +
+                   describe(key, neighbours_.rank(key.side)) + " is damaged: " + fault);
+  }
+  mine.payload = {message + header_bytes, static_cast<std::size_t>(mine.header.bytes)};
+  mine.is_in = true;
+}
+
+bool SlotExchange::poll(Side side) {
+  const bool was_in = track(Lane::Halo, side).is_in;
+  if (!look_for(Lane::Halo, side)) return false;
+  if (was_in) return true;
+  const Track& mine = track(Lane::Halo, side);
+  HaloTimes& times = halo_times_[index_of(side)];
+  times.noticed = now_ns();
+  times.posted = mine.header.posted;
+  if (mine.sent == mine.header.number)
+    stats_.flight_seconds += 1e-9 * static_cast<double>(times.noticed - times.sent);
+  return true;
+}
+
+std::span<const std::byte> SlotExchange::received(Side side) const {
+  const Track& mine = track(Lane::Halo, side);
+  if (!mine.is_in) [[unlikely]]
+    throw std::logic_error("Exchange::received: no message is in");
+  return mine.payload;
+}
+
+void SlotExchange::release(Side side) {
+  release_message(Lane::Halo, side);
+}
+
+void SlotExchange::release_message(Lane lane, Side side) {
+  Track& mine = track(lane, side);
+  if (!mine.is_in) [[unlikely]]
+    throw std::logic_error("Exchange::release: no message is in");
+  mine.is_in = false;
+  mine.payload = {};
+  ++mine.released;
+  recycle({lane, side, mine.released});
+}
+
+void SlotExchange::begin_bulk(std::span<const std::byte> to_left,
+                              std::span<const std::byte> to_right) {
+  if (!bulk_sides_[0].is_done || !bulk_sides_[1].is_done) {
+    throw std::logic_error("Exchange::begin_bulk: the last bulk is not complete");
+  }
+  bulk_begin_ = now_ns();
+  const std::size_t longest = std::max(to_left.size(), to_right.size());
+  largest_bulk_ = std::max(largest_bulk_, longest);
+  prepare_bulk(Side::Left, to_left);
+  prepare_bulk(Side::Right, to_right);
+  const std::size_t needed =
+      std::max<std::size_t>(1, (longest + capacity_.bulk - 1) / capacity_.bulk);
+  const std::size_t agreed = agree_rounds(needed);
+  for (const Side side : both_sides) {
+    if (agreed > 0) bulk_sides_[index_of(side)].num_rounds = agreed;
+    if (neighbours_.has(side)) send_fragment(side);
+  }
+}
+
+void SlotExchange::prepare_bulk(Side side, std::span<const std::byte> bytes) {
+  if (!bytes.empty()) require_neighbour(side, "Exchange::begin_bulk");
+  BulkSide& mine = bulk_sides_[index_of(side)];
+  mine.out.assign(bytes.begin(), bytes.end());
+  mine.in.clear();
+  mine.num_sent = 0;
+  mine.num_rounds = std::max<std::size_t>(1, (bytes.size() + capacity_.bulk - 1) / capacity_.bulk);
+  mine.round = 0;
+  mine.is_done = !neighbours_.has(side);
+}
+
+void SlotExchange::send_fragment(Side side) {
+  BulkSide& mine = bulk_sides_[index_of(side)];
+  const std::size_t bytes = std::min(capacity_.bulk, mine.out.size() - mine.num_sent);
+  std::byte* outbox = open_outbox(Lane::Bulk, side, bytes) + header_bytes;
+  std::copy_n(mine.out.data() + mine.num_sent, bytes, outbox);
+  mine.num_sent += bytes;
+  ++mine.round;
+  post_message(Lane::Bulk, side, mine.round < mine.num_rounds);
+  ++stats_.bulk_messages;
+  stats_.bulk_bytes += bytes;
+}
+
+// One round at most: in a ring of blocking exchanges a rank must serve both sides in turn.
+void SlotExchange::advance_bulk(Side side) {
+  BulkSide& mine = bulk_sides_[index_of(side)];
+  if (mine.is_done || !look_for(Lane::Bulk, side)) return;
+  const Track& lane = track(Lane::Bulk, side);
+  mine.in.insert(mine.in.end(), lane.payload.begin(), lane.payload.end());
+  const bool they_have_more = lane.header.has_more != 0;
+  release_message(Lane::Bulk, side);
+  if (they_have_more || mine.round < mine.num_rounds) {
+    send_fragment(side);
+  } else {
+    mine.is_done = true;
+  }
+}
+
+void SlotExchange::progress() {
+  int is_there = 0;
+  check(
+      MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, communicator_.handle(), &is_there, MPI_STATUS_IGNORE),
+      "MPI_Iprobe");
+}
+
+bool SlotExchange::poll_bulk() {
+  const bool was_done = bulk_sides_[0].is_done && bulk_sides_[1].is_done;
+  if (was_done) return true;
+  advance_bulk(Side::Left);
+  advance_bulk(Side::Right);
+  if (!bulk_sides_[0].is_done || !bulk_sides_[1].is_done) return false;
+  stats_.bulk_seconds += seconds_since(bulk_begin_);
+  return true;
+}
+
+ExchangeStats SlotExchange::stats() const {
+  ExchangeStats all = stats_;
+  all.transport = transport();
+  all.halo_capacity = capacity_.halo;
+  all.bulk_capacity = capacity_.bulk;
+  return all;
+}
+
+}  // namespace barchan

@@ -1,0 +1,133 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <barchan/comm/slots/exchange.hpp>
+#include <barchan/comm/slots/message.hpp>
+
+namespace barchan {
+
+/// Bytes of payload that a slot of each lane holds, equal on every rank.
+struct SlotCapacity {
+  std::size_t halo = 0;
+  std::size_t bulk = 0;
+
+  [[nodiscard]] std::size_t of(Lane lane) const { return lane == Lane::Halo ? halo : bulk; }
+};
+
+/// What all exchanges have in common: numbers, headers, growth, bulk in fragments, figures. A
+/// derived class says where messages lie and how they travel (the protected part).
+///
+/// Each lane has two slots per direction; message n uses slot n mod 2. Happens-before, A and B
+/// neighbours, one lane:
+///
+///     pack A(n) → post A(n) → arrived B(n) → release B(n)     and the same with A and B swapped
+///     release of n → pack of n+1, on either rank              duty of the caller, or of the rounds
+///
+/// hence
+///
+///     release B(n−1) → pack B(n) → post B(n) → arrived A(n) → release A(n) → pack A(n+1)
+///
+/// When A packs n+1, B has released n−1, which was the last to use that slot, and A's own copy of
+/// n−1 has left.
+///
+/// Bulk: both neighbours send a fragment a round, empty or not, with a flag whether they have more;
+/// rounds go on while either has more, so both see the same end. A slot's capacity grows with
+/// reserve() to the largest bulk seen, so that steady rebuilds need one round.
+class SlotExchange : public Exchange {
+ public:
+  SlotExchange(const Communicator& communicator, Neighbours neighbours);
+
+  void reserve(std::size_t bytes) final;
+  std::span<std::byte> outgoing(Side side, std::size_t bytes) final;
+  void send(Side side) final;
+  bool poll(Side side) final;
+  std::span<const std::byte> received(Side side) const final;
+  void release(Side side) final;
+  void begin_bulk(std::span<const std::byte> to_left, std::span<const std::byte> to_right) final;
+  void progress() override;
+  bool poll_bulk() final;
+  std::vector<std::byte>& bulk(Side side) final { return bulk_sides_[index_of(side)].in; }
+  std::int64_t bulk_posted(Side side) const final { return track(Lane::Bulk, side).header.posted; }
+  ExchangeStats stats() const final;
+  HaloTimes halo_times(Side side) const final { return halo_times_[index_of(side)]; }
+
+  /// First slots; collective. make_exchange calls it once. Errors, the same on every rank:
+  /// InputError for slots that do not fit into memory.
+  void start(SlotCapacity capacity);
+
+ protected:
+  /// Slots for `capacity` on every rank, empty; numbers start again at 1. Collective.
+  virtual void allocate(SlotCapacity capacity) = 0;
+  /// Gives up the slots; nothing is in flight. Collective; all ranks have done so before allocate
+  /// is called.
+  virtual void retire() = 0;
+  /// Memory of slot_bytes(capacity) for the header and payload of the message to key.side.
+  virtual std::byte* outbox(const MessageKey& key) = 0;
+  /// Sends header and payload, which lie in the outbox.
+  virtual void post(const MessageKey& key, const MessageHeader& header) = 0;
+  /// The message from key.side, header first, once it is in; until then nullptr. Asked again until
+  /// it is.
+  virtual const std::byte* arrived(const MessageKey& key) = 0;
+  /// Consumed.
+  virtual void recycle(const MessageKey& /*key*/) {}
+  virtual std::string transport() const = 0;
+  /// Rounds for a bulk of which this rank needs `mine`. Zero: each pair of neighbours goes on for
+  /// as long as it needs. Exchanges that move all ranks at once agree on one number.
+  virtual std::size_t agree_rounds(std::size_t /*mine*/) { return 0; }
+
+  [[nodiscard]] const Communicator& communicator() const { return communicator_; }
+  [[nodiscard]] const Neighbours& neighbours() const { return neighbours_; }
+  [[nodiscard]] SlotCapacity capacity() const { return capacity_; }
+
+  static constexpr std::size_t index(const MessageKey& key) {
+    return static_cast<std::size_t>(key.lane_side());
+  }
+
+ private:
+  struct Track {  // of one lane and side
+    std::uint64_t sent = 0;
+    std::uint64_t released = 0;
+    std::size_t outgoing_bytes = 0;
+    bool is_packing = false;
+    bool is_in = false;
+    std::span<const std::byte> payload;
+    MessageHeader header;
+  };
+  struct BulkSide {
+    std::vector<std::byte> out;
+    std::size_t num_sent = 0;    // bytes
+    std::size_t num_rounds = 0;  // that this rank needs
+    std::size_t round = 0;       // fragments sent
+    bool is_done = true;
+    std::vector<std::byte> in;
+  };
+
+  Track& track(Lane lane, Side side) { return tracks_[index(MessageKey{lane, side, 0})]; }
+  const Track& track(Lane lane, Side side) const {
+    return tracks_[index(MessageKey{lane, side, 0})];
+  }
+  void require_neighbour(Side side, const char* what) const;
+  void require_room(SlotCapacity capacity) const;
+  std::byte* open_outbox(Lane lane, Side side, std::size_t bytes);
+  void post_message(Lane lane, Side side, bool has_more);
+  bool look_for(Lane lane, Side side);
+  void accept(const MessageKey& key, const std::byte* message);
+  void release_message(Lane lane, Side side);
+  void prepare_bulk(Side side, std::span<const std::byte> bytes);
+  void send_fragment(Side side);
+  void advance_bulk(Side side);
+
+  Communicator communicator_;
+  Neighbours neighbours_;
+  SlotCapacity capacity_;
+  std::array<Track, num_lane_sides> tracks_{};
+  std::array<BulkSide, 2> bulk_sides_{};
+  std::array<HaloTimes, 2> halo_times_{};
+  std::size_t largest_bulk_ = 0;
+  std::int64_t bulk_begin_ = 0;
+  ExchangeStats stats_;
+};
+
+}  // namespace barchan

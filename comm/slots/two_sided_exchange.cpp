@@ -1,0 +1,87 @@
+#include <barchan/comm/slots/two_sided_exchange.hpp>
+
+#include <exception>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include <barchan/comm/base/call_watch.hpp>
+#include <barchan/comm/base/mpi_error.hpp>
+#include <barchan/comm/base/mpi_session.hpp>
+
+namespace barchan {
+namespace {
+
+void wait(MPI_Request& request) {
+  check_watched("MPI_Wait", [&] { return MPI_Wait(&request, MPI_STATUS_IGNORE); });
+}
+
+}  // namespace
+
+TwoSidedExchange::TwoSidedExchange(const Communicator& communicator, Neighbours neighbours)
+    : SlotExchange(communicator, neighbours), num_exceptions_(std::uncaught_exceptions()) {}
+
+// A send may still read its buffer, and a receive still fill one. Where the others cannot be waited
+// for, the buffers are left to the library.
+TwoSidedExchange::~TwoSidedExchange() {
+  if (!is_mpi_initialized()) return;
+  if (std::uncaught_exceptions() > num_exceptions_) {
+    static_cast<void>(std::make_unique<Slots>(std::move(outboxes_)).release());
+    static_cast<void>(std::make_unique<Slots>(std::move(inboxes_)).release());
+    return;
+  }
+  for (auto& pair : outboxes_) {
+    for (Slot& slot : pair) {
+      const CallWatch watch("MPI_Wait");
+      MPI_Wait(&slot.request, MPI_STATUS_IGNORE);
+    }
+  }
+}
+
+void TwoSidedExchange::allocate(SlotCapacity capacity) {
+  for (const Lane lane : {Lane::Halo, Lane::Bulk}) {
+    for (const Side side : {Side::Left, Side::Right}) {
+      if (!neighbours().has(side)) continue;
+      for (Slot& slot : inboxes_[index({lane, side, 0})])
+        slot.memory.resize(slot_bytes(capacity.of(lane)));
+      for (Slot& slot : outboxes_[index({lane, side, 0})])
+        slot.memory.resize(slot_bytes(capacity.of(lane)));
+    }
+  }
+}
+
+void TwoSidedExchange::retire() {
+  for (auto& pair : outboxes_) {
+    for (Slot& slot : pair) wait(slot.request);
+  }
+}
+
+// The message that used this slot last has been received, so its send completes without the
+// neighbour.
+std::byte* TwoSidedExchange::outbox(const MessageKey& key) {
+  Slot& slot = outboxes_[index(key)][static_cast<std::size_t>(key.slot())];
+  wait(slot.request);
+  return slot.memory.data();
+}
+
+void TwoSidedExchange::post(const MessageKey& key, const MessageHeader& header) {
+  Slot& slot = outboxes_[index(key)][static_cast<std::size_t>(key.slot())];
+  write_header(header, slot.memory.data());
+  const MessageKey receiver{key.lane, opposite(key.side), key.number};
+  check(MPI_Isend(slot.memory.data(), mpi_count(header_bytes + header.bytes), MPI_BYTE,
+                  neighbour(key), receiver.lane_side(), communicator().handle(), &slot.request),
+        "MPI_Isend");
+}
+
+void TwoSidedExchange::require_whole(const MessageKey& key, const MPI_Status& status) {
+  int count = 0;
+  check(MPI_Get_count(&status, MPI_BYTE, &count), "MPI_Get_count");
+  const auto came = static_cast<std::size_t>(count);
+  if (came >= header_bytes && read_header(inbox(key).memory.data()).bytes == came - header_bytes)
+    return;
+  throw RunError("rank " + std::to_string(communicator().rank()) + ": " +
+                 describe(key, neighbour(key)) + " has " + std::to_string(came) +
+                 " bytes, which its header contradicts");
+}
+
+}  // namespace barchan

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <random>
+
+#include <barchan/comm/wrappers/wrapped_exchange.hpp>
+
+namespace barchan {
+
+/// Tests only: any exchange behind a network of moods. Hides what has arrived for a random time,
+/// per message and side, and now and then holds the rank before a send. Order and content are the
+/// inner exchange's.
+class DelayedExchange final : public WrappedExchange {
+ public:
+  DelayedExchange(std::unique_ptr<Exchange> inner, double max_delay_seconds, std::uint64_t seed);
+
+  void send(Side side) override;
+  bool poll(Side side) override;
+  void release(Side side) override;
+  void begin_bulk(std::span<const std::byte> to_left, std::span<const std::byte> to_right) override;
+  bool poll_bulk() override;
+
+ private:
+  std::int64_t random_delay_ns();
+  void hold_sometimes();
+  bool is_shown(std::int64_t& shown_at);
+
+  double max_delay_seconds_;
+  std::mt19937_64 random_;
+  std::array<std::int64_t, 2> shown_at_{};  // [ns]; 0 = not in yet
+  std::int64_t bulk_shown_at_ = 0;
+};
+
+}  // namespace barchan

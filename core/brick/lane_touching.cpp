@@ -1,0 +1,169 @@
+#include <algorithm>
+#include <cmath>
+
+#include <barchan/core/brick/lane.hpp>
+
+// Where many candidates do not touch, a block works only on those that touch or soon may. A narrow
+// phase finds them, and packs their pairs, laws and histories to the front of the block. The packed
+// pairs serve until particles may have moved far enough for another pair to touch. A pair that
+// parts meanwhile has no force and loses its history, as it would in the whole list.
+//
+//   candidates   | a b c d e f g h | …        histories, unpacked   | a – c – – f g – |
+//   mask         | 1 0 1 0 0 1 1 0 |          histories, packed     | a c f g | …
+
+namespace barchan {
+namespace {
+
+void copy_history(int length, const double* from, std::int64_t k, double* to, std::int64_t a) {
+  const double* s = from + k / kBatch * kBatch * length + k % kBatch;
+  double* t = to + a / kBatch * kBatch * length + a % kBatch;
+  for (int c = 0; c < length; ++c) t[c * kBatch] = s[c * kBatch];
+}
+
+void clear_history(int length, double* to, std::int64_t a) {
+  double* t = to + a / kBatch * kBatch * length + a % kBatch;
+  for (int c = 0; c < length; ++c) t[c * kBatch] = 0.0;
+}
+
+/// The histories of a block, number by number, and room for one pair more.
+template <class Length>
+struct BlockHistory {
+  static constexpr int kRoom = kBlockPairs + kBatch;
+  alignas(64) double value[kMostHistory][kRoom];
+  Length length;  ///< a constant, where a law of the list has it
+
+  explicit BlockHistory(Length of) : length(of) {}
+
+  void read(const double* histories, std::int64_t count) {
+    for (std::int64_t k = 0; k < count; k += kBatch) {
+      for (int c = 0; c < length; ++c)
+        std::copy_n(histories + k * length + c * kBatch, int{kBatch}, value[c] + k);
+    }
+  }
+  void write(double* histories, std::int64_t count) const {
+    for (std::int64_t k = 0; k < count; k += kBatch) {
+      for (int c = 0; c < length; ++c)
+        std::copy_n(value[c] + k, int{kBatch}, histories + k * length + c * kBatch);
+    }
+  }
+  std::int64_t clear(std::int64_t k) {
+    for (int c = 0; c < length; ++c) value[c][k] = 0.0;
+    return k;
+  }
+  void copy(std::int64_t to, const BlockHistory& other, std::int64_t from) {
+    for (int c = 0; c < length; ++c) value[c][to] = other.value[c][from];
+  }
+};
+
+bool has_bit(const std::uint8_t* masks, std::int64_t k) {
+  return (masks[k / 8] >> (k % 8) & 1) != 0;
+}
+
+void unpack(PairList& list, PairBlock& block) {
+  if (!block.is_packed) return;
+  double* histories = list.history_of_block(block.begin);
+  const std::uint8_t* known = list.mask.data() + block.begin / kBatch;
+  std::int64_t a = block.num_packed;
+  for (std::int64_t k = block.end - block.begin - 1; k >= 0; --k) {
+    if (has_bit(known, k))
+      copy_history(list.history_length, histories, --a, histories, k);
+    else
+      clear_history(list.history_length, histories, k);
+  }
+  block.is_packed = false;
+}
+
+// Nobody can foretell which lane of which batch is set, so nothing here branches on it.
+template <class Length>
+void pack_block(Length length, PairList& list, PairBlock& block, const std::uint8_t* masks,
+                std::int32_t waste) {
+  std::uint8_t* known = list.mask.data() + block.begin / kBatch;
+  double* histories = list.history_of_block(block.begin);
+  const std::int64_t size = block.end - block.begin;
+  if (!block.is_packed) std::fill_n(known, size / kBatch, std::uint8_t{0xff});
+  const std::int64_t num_before = block.is_packed ? block.num_packed : size;
+  BlockHistory<Length> before(length), after(length);
+  before.read(histories, num_before);
+  const std::int64_t none = before.clear(num_before);
+  const auto first = static_cast<std::size_t>(block.begin);
+  std::int64_t old = 0, now = 0;
+  for (std::int64_t k = 0; k < size; ++k) {
+    const bool was = has_bit(known, k);
+    const auto from = first + static_cast<std::size_t>(k),
+               to = first + static_cast<std::size_t>(now);
+    list.packed_i[to] = list.i[from];
+    list.packed_j[to] = list.j[from];
+    list.packed_code[to] = list.code[from];
+    after.copy(now, before, was ? old : none);
+    now += has_bit(masks, k) ? 1 : 0;
+    old += was ? 1 : 0;
+  }
+  block.num_packed = now;
+  for (; now % kBatch != 0; ++now) {
+    const auto to = first + static_cast<std::size_t>(now);
+    list.packed_i[to] = waste;
+    list.packed_j[to] = waste + 1;
+    list.packed_code[to] = 0;
+    after.clear(now);
+  }
+  after.write(histories, now);
+  std::copy_n(masks, size / kBatch, known);
+  block.is_packed = true;
+}
+
+}  // namespace
+
+// A narrow margin asks for the narrow phase often, a wide one lets more pairs in that do not touch.
+// With n steps between two narrow phases, the costs go with n·travel/skin and 1/n, so the best
+// margin n·travel is about sqrt(skin·travel), where travel is that of one step.
+template <int Dim>
+double Lane<Dim>::packing_margin() const {
+  return std::sqrt(world_->skin * step_travel_);
+}
+
+template <int Dim>
+PairJob Lane<Dim>::block_job(PairList& list, PairBlock& block, double travel) {
+  PairJob pairs = job(list);
+  pairs.begin = block.begin;
+  pairs.end = block.end;
+  if (packs()) pick_touching(list, block, pairs, travel);
+  return pairs;
+}
+
+template <int Dim>
+void Lane<Dim>::pick_touching(PairList& list, PairBlock& block, PairJob& pairs, double travel) {
+  if (!block.is_packed || travel > block.packed_until) {
+    std::array<std::uint8_t, kBlockPairs / kBatch> masks;
+    const double margin = packing_margin();
+    world_->kernels.narrow(pairs, margin, masks.data());
+    pack(list, block, masks.data());
+    // Both of a pair travel; a little less, for the rounding of positions and sums.
+    block.packed_until = travel + 0.499 * margin;
+  }
+  pairs.i = list.packed_i.data();
+  pairs.j = list.packed_j.data();
+  pairs.code = list.packed_code.data();
+  pairs.end = block.begin + (block.num_packed + kBatch - 1) / kBatch * kBatch;
+}
+
+template <int Dim>
+void Lane<Dim>::pack(PairList& list, PairBlock& block, const std::uint8_t* masks) {
+  with_length<Dim>(list.history_length,
+                   [&](auto length) { pack_block(length, list, block, masks, store_.waste()); });
+}
+
+template <int Dim>
+void Lane<Dim>::unpack_history() {
+  for (Block& block : blocks_) unpack(pairs_, block);
+  for (const Side side : {Left, Right}) unpack_history_across(side);
+}
+
+template <int Dim>
+void Lane<Dim>::unpack_history_across(Side side) {
+  for (PairBlock& block : bands_[side].blocks) unpack(bands_[side].across, block);
+}
+
+template class Lane<2>;
+template class Lane<3>;
+
+}  // namespace barchan

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <barchan/core/kernels/force_grain.hpp>
+#include <barchan/core/kernels/kernel_set.hpp>
+#include <barchan/core/kernels/law_table.hpp>
+#include <barchan/core/links/bonds.hpp>
+#include <barchan/core/links/walls.hpp>
+#include <barchan/core/model/model.hpp>
+#include <barchan/core/search/grid.hpp>
+
+namespace barchan {
+
+/// Travel with lists of a skin, squared, over that up to which they have all contacts.
+[[nodiscard]] inline double outrun_share(double distance2, double skin) {
+  if (distance2 == 0.0) return 0.0;
+  return distance2 / (0.25 * skin * skin);
+}
+
+/// What all lanes of a run share.
+template <int Dim>
+struct World {
+  Grid<Dim> grid;
+  LawTable laws;
+  ForceGrain grain;
+  KernelSet kernels;
+  std::vector<BondLaw> bond_laws;
+  std::vector<WallSpec> wall_specs;
+  std::vector<WallShape<Dim>> wall_shapes;
+  std::vector<WallState> walls;
+  ContactSearchKind search = ContactSearchKind::Cells;
+  double skin = 0.0;  ///< that the next lists get [m]
+  /// Half of the smallest radius: where nothing moves farther in a step, no contact is skipped [m].
+  double quick_travel = std::numeric_limits<double>::infinity();
+  double dt = 0.0;  ///< [s]
+  std::int64_t num_particles = 0;
+
+  /// In a step, with lists of a skin. Of two that move by more each, lists may lack one that was
+  /// passed (passage.hpp) [m].
+  [[nodiscard]] double most_travel(double lists_skin) const {
+    return std::max(0.5 * lists_skin, quick_travel);
+  }
+
+  /// Walls where the run begins. @pre the grid is made
+  void set_walls(std::span<const WallSpec> specs) {
+    wall_specs.assign(specs.begin(), specs.end());
+    wall_shapes.clear();
+    walls.clear();
+    for (const WallSpec& spec : specs) {
+      wall_shapes.emplace_back(spec, grid.box());
+      WallState& state = walls.emplace_back();
+      state.point = spec.point;
+      state.velocity = spec.velocity;
+      state.is_active = spec.from_stage <= 0;
+    }
+  }
+  [[nodiscard]] WallView<Dim> wall_view() const { return {wall_specs, wall_shapes, walls}; }
+};
+
+/// Every so many steps comes what must not depend on when lists are rebuilt: positions go around
+/// the ends of a periodic box, particles outside the domain are noticed, overlaps are looked at.
+inline constexpr std::int64_t kEventSteps = 16;
+
+/// What changes from step to step.
+struct StepFrame {
+  double kick = 0.0;           ///< dt, or dt/2 in the first step [s]
+  double gravity[3] = {};      ///< [m/s²]
+  double local_damping = 0.0;  ///< of the stage (Stage)
+  std::int64_t step = 0;
+  /// In the first step, known by its half kick, nothing has moved yet.
+  [[nodiscard]] bool has_moved(double dt) const { return kick >= dt; }
+};
+
+}  // namespace barchan

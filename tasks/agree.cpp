@@ -1,0 +1,28 @@
+#include <barchan/tasks/agree.hpp>
+
+#include <exception>
+#include <new>
+#include <string>
+
+#include <barchan/core/base/error.hpp>
+
+namespace barchan {
+
+void agree(const Communicator& communicator, const std::function<void()>& work) {
+  std::string error;  // its first letter tells the kind
+  try {
+    work();
+  } catch (const InputError& e) {
+    error = std::string("I") + e.what();
+  } catch (const std::bad_alloc&) {
+    error = "Rout of memory";
+  } catch (const std::exception& e) {
+    error = std::string("R") + e.what();
+  }
+  error = communicator.first_error(error);
+  if (error.empty()) return;
+  if (error.front() == 'I') throw InputError(error.substr(1), "");
+  throw CommonError(error.substr(1));
+}
+
+}  // namespace barchan
