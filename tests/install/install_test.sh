@@ -7,7 +7,7 @@ rm -rf "$work"/staged "$work"/installed "$work"/embed "$work"/embed_build
 
 cmake --install "$BARCHAN_BUILD" --prefix "$work/staged" > install.log
 mv staged installed
-for path in bin/barchan include/barchan/core/vec.hpp share/barchan/examples/embed/CMakeLists.txt; do
+for path in bin/barchan include/barchan/core/base/vec.hpp share/barchan/examples/embed/CMakeLists.txt; do
   [[ -e installed/$path ]] || { echo "not installed: $path"; exit 1; }
 done
 [[ -L installed/include/barchan/core ]] && { echo "headers are installed as links"; exit 1; }

@@ -16,11 +16,11 @@
 #include <barchan/core/checkpoint/check_share.hpp>
 #include <barchan/core/checkpoint/checkpoint_folder.hpp>
 #include <barchan/core/checkpoint/durable.hpp>
-<barchan / core / checkpoint / state.hpp>
+#include <barchan/core/checkpoint/state.hpp>
 
 #include <support/temporary_folder.hpp>
 
-    namespace fs = std::filesystem;
+namespace fs = std::filesystem;
 
 namespace barchan {
 namespace {
