@@ -234,8 +234,7 @@ void Simulation::EngineOf<Dim>::watch_growth() {
     };
     std::size_t candidates = 0;
     candidates += lane.pairs().i.capacity();
-    for (const auto side : {Lane<Dim>::Left, Lane<Dim>::Right})
-      candidates += lane.band(side).across.i.capacity();
+    for (const auto side : kSides) candidates += lane.band(side).across.i.capacity();
     tell(lane.store().id.capacity(), true, named("rows of particles and ghosts"));
     tell(candidates, true, named("candidate pairs"));
   }

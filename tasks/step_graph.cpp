@@ -16,8 +16,8 @@ GraphShape shape_of(const Strip<Dim>& strip, Schedule schedule) {
   GraphShape shape;
   for (int l = 0; l < strip.num_lanes(); ++l) {
     const Lane<Dim>& lane = strip.lane(l);
-    shape.lanes.push_back({lane.num_chunks(), lane.band(in_core<Dim>(Side::Left)).exists,
-                           lane.band(in_core<Dim>(Side::Right)).exists});
+    shape.lanes.push_back(
+        {lane.num_chunks(), lane.band(Side::Left).exists, lane.band(Side::Right).exists});
   }
   shape.neighbours = strip.neighbours();
   shape.is_sequential = schedule == Schedule::Sequential;

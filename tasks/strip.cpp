@@ -52,7 +52,7 @@ template <int Dim>
 void Strip<Dim>::place_bands() {
   for (int l = 0; l < num_lanes(); ++l) {
     for (const Side side : kSides) {
-      Band& band = lane(l).band(in_core<Dim>(side));
+      Band& band = lane(l).band(side);
       band.exists = has_neighbour(l, side);
       band.returns = returns_ && is_remote(l, side);
     }
@@ -62,11 +62,10 @@ void Strip<Dim>::place_bands() {
 template <int Dim>
 void Strip<Dim>::finish_band(int l, Side side) {
   Lane<Dim>& mine = lane(l);
-  const auto core_side = in_core<Dim>(side);
-  const Band& band = mine.band(core_side);
+  const Band& band = mine.band(side);
   if (!is_remote(l, side)) {
-    if (!post(l).is_fresh) mine.unpack_halo(core_side, inbox(l, side));
-    return mine.finish_band(core_side);
+    if (!post(l).is_fresh) mine.unpack_halo(side, inbox(l, side));
+    return mine.finish_band(side);
   }
   if (band.returns && side == Side::Right) {
     const auto message = exchange_->received(side);
@@ -76,10 +75,10 @@ void Strip<Dim>::finish_band(int l, Side side) {
     return mine.finish_right_band(results_);
   }
   if (awaits(side)) {
-    mine.unpack_halo(core_side, exchange_->received(side));
+    mine.unpack_halo(side, exchange_->received(side));
     exchange_->release(side);
   }
-  mine.finish_band(core_side);
+  mine.finish_band(side);
   if (!band.returns) return;
   mine.results(results_);
   send_halo(side, results_.size() * sizeof(double), [&](std::span<std::byte> message) {
@@ -111,15 +110,14 @@ void Strip<Dim>::set_exchange(std::unique_ptr<Exchange> exchange) {
 template <int Dim>
 void Strip<Dim>::send_band(int l, Side side) {
   Lane<Dim>& mine = lane(l);
-  const auto core_side = in_core<Dim>(side);
   if (is_remote(l, side)) {
     if (returns_ && side == Side::Left) return;  // ghosts go right only
-    return send_halo(side, mine.halo_bytes(core_side),
-                     [&](std::span<std::byte> message) { mine.pack_halo(core_side, message); });
+    return send_halo(side, mine.halo_bytes(side),
+                     [&](std::span<std::byte> message) { mine.pack_halo(side, message); });
   }
   auto& outbox = post(l).halo[static_cast<std::size_t>(1 - post(l).parity)][index_of(side)];
-  outbox.resize(mine.halo_bytes(core_side));
-  mine.pack_halo(core_side, outbox);
+  outbox.resize(mine.halo_bytes(side));
+  mine.pack_halo(side, outbox);
 }
 
 template <int Dim>
@@ -151,15 +149,13 @@ void Strip<Dim>::complete_halo() {
   if (post(0).is_fresh) return;
   for (int l = 0; l < num_lanes(); ++l) {
     for (const Side side : kSides) {
-      if (has_neighbour(l, side) && !is_remote(l, side))
-        lane(l).unpack_halo(in_core<Dim>(side), inbox(l, side));
+      if (has_neighbour(l, side) && !is_remote(l, side)) lane(l).unpack_halo(side, inbox(l, side));
     }
   }
   for (const Side side : kSides) {
     if (!awaits(side) || (returns_ && side == Side::Right)) continue;
     wait_halo(side);
-    lane(side == Side::Left ? 0 : num_lanes() - 1)
-        .unpack_halo(in_core<Dim>(side), exchange_->received(side));
+    lane(side == Side::Left ? 0 : num_lanes() - 1).unpack_halo(side, exchange_->received(side));
     exchange_->release(side);
     awaited_[index_of(side)] = false;
   }

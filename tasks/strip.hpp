@@ -28,11 +28,6 @@ struct RebuildWaits {
   [[nodiscard]] double sum() const { return halo + migration + ghosts; }
 };
 
-template <int Dim>
-typename Lane<Dim>::Side in_core(Side side) {
-  return side == Side::Left ? Lane<Dim>::Left : Lane<Dim>::Right;
-}
-
 /// The strip of one rank: its lanes, one per thread, and what passes between lanes and between
 /// ranks.
 ///

@@ -128,7 +128,7 @@ void Strip<Dim>::exchange_ghosts(const ForEachLane& parallel) {
     for (const Side side : kSides) {
       auto& out = posts_[static_cast<std::size_t>(l)].out[index_of(side)];
       out.clear();
-      if (has_neighbour(l, side)) lane(l).pack_ghosts(in_core<Dim>(side), out);
+      if (has_neighbour(l, side)) lane(l).pack_ghosts(side, out);
     }
   });
   begin_bulk();
@@ -162,14 +162,14 @@ template <int Dim>
 void Strip<Dim>::reserve_posts() {
   for (int l = 0; l < num_lanes(); ++l) {
     for (const Side side : kSides) {
-      const std::size_t bytes = lane(l).halo_bytes(in_core<Dim>(side));
+      const std::size_t bytes = lane(l).halo_bytes(side);
       for (auto& boxes : posts_[static_cast<std::size_t>(l)].halo)
         boxes[index_of(side)].reserve(bytes);
     }
   }
   if (!returns_) return;
-  results_.reserve(std::max(lane(0).results_bytes(Lane<Dim>::Left),
-                            lane(num_lanes() - 1).results_bytes(Lane<Dim>::Right)) /
+  results_.reserve(std::max(lane(0).results_bytes(Side::Left),
+                            lane(num_lanes() - 1).results_bytes(Side::Right)) /
                    sizeof(double));
 }
 
@@ -201,10 +201,9 @@ void Strip<Dim>::wait_bulk(const char* what) {
 template <int Dim>
 std::size_t Strip<Dim>::most_halo_bytes() const {
   const Lane<Dim>&first = lane(0), &last = lane(num_lanes() - 1);
-  std::size_t most = std::max(first.halo_bytes(Lane<Dim>::Left), last.halo_bytes(Lane<Dim>::Right));
+  std::size_t most = std::max(first.halo_bytes(Side::Left), last.halo_bytes(Side::Right));
   if (returns_)
-    most = std::max(
-        {most, first.results_bytes(Lane<Dim>::Left), last.results_bytes(Lane<Dim>::Right)});
+    most = std::max({most, first.results_bytes(Side::Left), last.results_bytes(Side::Right)});
   return most;
 }
 

@@ -142,9 +142,9 @@ void steps(benchmark::State& state, VectorWidth width) {
 template <int Dim>
 void pack_halo(benchmark::State& state) {
   const auto sample = make_sample<Dim>(state.range(0), VectorWidth::Scalar, true);
-  std::vector<std::byte> message(sample->lane->halo_bytes(Lane<Dim>::Right));
+  std::vector<std::byte> message(sample->lane->halo_bytes(Side::Right));
   for (auto _ : state) {
-    sample->lane->pack_halo(Lane<Dim>::Right, message);
+    sample->lane->pack_halo(Side::Right, message);
     benchmark::ClobberMemory();
   }
   const double record = double{halo_record_bytes<Dim>()}, bytes = record_bytes(Dim) + record;
@@ -154,10 +154,10 @@ void pack_halo(benchmark::State& state) {
 template <int Dim>
 void unpack_halo(benchmark::State& state) {
   const auto sample = make_sample<Dim>(state.range(0), VectorWidth::Scalar, true);
-  std::vector<std::byte> message(sample->right->halo_bytes(Lane<Dim>::Left));
-  sample->right->pack_halo(Lane<Dim>::Left, message);
+  std::vector<std::byte> message(sample->right->halo_bytes(Side::Left));
+  sample->right->pack_halo(Side::Left, message);
   for (auto _ : state) {
-    sample->lane->unpack_halo(Lane<Dim>::Right, message);
+    sample->lane->unpack_halo(Side::Right, message);
     benchmark::ClobberMemory();
   }
   const double record = double{halo_record_bytes<Dim>()}, bytes = 2.0 * record_bytes(Dim) + record;

@@ -95,8 +95,8 @@ void settle(Sample<Dim>& sample) {
   left.order();
   if (right != nullptr) {
     right->order();
-    left.pack_ghosts(Lane<Dim>::Right, to_right);
-    right->pack_ghosts(Lane<Dim>::Left, to_left);
+    left.pack_ghosts(Side::Right, to_right);
+    right->pack_ghosts(Side::Left, to_left);
     right->list_owned();
     right->take_ghosts(to_right, {});
     right->restore_history();
@@ -131,7 +131,7 @@ std::unique_ptr<Sample<Dim>> make_sample(std::int64_t count, VectorWidth width, 
   const auto seed = [&](int side, int begin, int end) {
     auto lane = std::make_unique<Lane<Dim>>(world);
     if (has_cut) {
-      lane->band(side == 0 ? Lane<Dim>::Right : Lane<Dim>::Left).exists = true;
+      lane->band(side == 0 ? Side::Right : Side::Left).exists = true;
     }
     const std::vector<char> bonded(parts[side].size(), 0);
     lane->seed(begin, end, parts[side], {}, {}, bonded);

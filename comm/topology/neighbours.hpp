@@ -1,24 +1,8 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
+#include <barchan/core/base/side.hpp>
 
 namespace barchan {
-
-enum class Side : int { Left = 0, Right = 1 };
-constexpr std::array<Side, 2> kSides{Side::Left, Side::Right};
-
-/// Of this side's element in an array of two.
-constexpr std::size_t index_of(Side side) {
-  return static_cast<std::size_t>(side);
-}
-
-constexpr Side opposite(Side side) {
-  return side == Side::Left ? Side::Right : Side::Left;
-}
-constexpr const char* name_of(Side side) {
-  return side == Side::Left ? "left" : "right";
-}
 
 /// Ranks of the strips beside this one; -1 = none. With a periodic strip axis the left of rank 0 is
 /// the last rank; with two ranks both may be the same rank.

@@ -48,7 +48,6 @@ class Lane {
  public:
   using Store = ParticleStore<Dim>;
   using L = Layout<Dim>;
-  enum Side { Left = 0, Right = 1 };
 
   explicit Lane(World<Dim>& world) : world_(&world) {}
 
@@ -159,8 +158,8 @@ class Lane {
   /// Of all walls the work since the start.
   std::vector<WallSums>& wall_sums() { return wall_sums_; }
   [[nodiscard]] std::vector<WallSums> measure_walls() const;
-  Band& band(Side side) { return bands_[side]; }
-  [[nodiscard]] const Band& band(Side side) const { return bands_[side]; }
+  Band& band(Side side) { return bands_[index_of(side)]; }
+  [[nodiscard]] const Band& band(Side side) const { return bands_[index_of(side)]; }
   /// Pairs and history; packed history is put back in its place first (unpack_history).
   PairList& pairs() {
     unpack_history();

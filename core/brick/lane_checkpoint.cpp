@@ -75,7 +75,7 @@ void Lane<Dim>::save(CheckpointShare& share) {
   save_particles(store_, share);
   const PeriodicBox& box = world_->grid.box();
   save_contacts(box, store_, pairs_, share);
-  if (bands_[Left].exists) save_contacts(box, store_, bands_[Left].across, share);
+  if (band(Side::Left).exists) save_contacts(box, store_, band(Side::Left).across, share);
 
   for (const WallContact<Dim>& c : walls_.list()) {
     const auto w = static_cast<std::size_t>(c.wall);
@@ -92,7 +92,7 @@ void Lane<Dim>::save(CheckpointShare& share) {
   }
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.bonds().size()); ++b) {
     const bool is_right_hand =
-        std::max(bonds_.end_a(b), bonds_.end_b(b)) < store_.ghost_begin(Right);
+        std::max(bonds_.end_a(b), bonds_.end_b(b)) < store_.ghost_begin(Side::Right);
     if (bonds_.is_broken(b) || !is_right_hand) continue;
     const Bond<Dim>& bond = bonds_.bonds()[static_cast<std::size_t>(b)];
     share.bond_ids.insert(share.bond_ids.end(), {bond.id_a, bond.id_b});

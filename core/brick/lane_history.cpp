@@ -41,11 +41,11 @@ void Lane<Dim>::collect_history(std::array<Migration<Dim>, 2>& leaving,
   for (const Block& block : blocks_) keep_staying(block, leaving, number);
   imbalance_.contacts -= static_cast<std::int64_t>(kept_.size());
   kept_.trim(kBlockPairs);
-  for (const Side side : {Left, Right}) {
-    const PairList& list = bands_[side].across;
-    for (const PairBlock& block : bands_[side].blocks) {
+  for (const Side side : kSides) {
+    const PairList& list = band(side).across;
+    for (const PairBlock& block : band(side).blocks) {
       block.for_each_worked_on(list, [&](std::size_t k, std::int32_t i, std::int32_t j) {
-        loosen(list, static_cast<std::int64_t>(k), {i, j}, side == Left, leaving, number);
+        loosen(list, static_cast<std::int64_t>(k), {i, j}, side == Side::Left, leaving, number);
       });
     }
   }
@@ -104,7 +104,7 @@ template <int Dim>
 typename Lane<Dim>::Slot Lane<Dim>::slot(std::int32_t a, std::int32_t b) {
   if (store_.is_owned(a) && store_.is_owned(b)) return owned_slot(std::min(a, b), std::max(a, b));
   const std::int32_t ghost = store_.is_owned(a) ? b : a, own = store_.is_owned(a) ? a : b;
-  Band& band = bands_[ghost < store_.ghost_begin(Right) ? Left : Right];
+  Band& band = this->band(ghost < store_.ghost_begin(Side::Right) ? Side::Left : Side::Right);
   return find_pair(band.across, {own, ghost});
 }
 
@@ -152,10 +152,10 @@ template <int Dim>
 bool Lane<Dim>::place(std::int32_t a, std::int32_t b, const double* history) {
   const Slot at = slot(a, b);
   if (at.list == nullptr) return false;
-  if (at.list == &bands_[Right].across && bands_[Right].returns)
+  if (at.list == &band(Side::Right).across && band(Side::Right).returns)
     return true;  // kept by the right-hand side
   // What comes from both sides, and what the lane right of a cut counts, is not counted again.
-  const bool counts = at.list != &bands_[Right].across && !at.list->has_history(at.k);
+  const bool counts = at.list != &band(Side::Right).across && !at.list->has_history(at.k);
   if (counts) ++imbalance_.contacts;
   put(at, at.list->i[static_cast<std::size_t>(at.k)] != a, history);
   return true;
@@ -209,10 +209,10 @@ template <int Dim>
 void Lane<Dim>::find_quick() {
   has_quick_ = false;
   judge_speeds({0, store_.num_owned});
-  for (const Side side : {Left, Right}) {
+  for (const Side side : kSides) {
     const std::int32_t begin = store_.ghost_begin(side);
-    const Rows ghosts{begin, begin + store_.num_ghosts[static_cast<std::size_t>(side)]};
-    bands_[side].has_quick = farthest_travel(store_, world_->dt, ghosts) > world_->quick_travel;
+    const Rows ghosts{begin, begin + store_.num_ghosts[index_of(side)]};
+    band(side).has_quick = farthest_travel(store_, world_->dt, ghosts) > world_->quick_travel;
   }
 }
 

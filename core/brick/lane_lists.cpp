@@ -44,8 +44,10 @@ template <int Dim>
 void Lane<Dim>::find_owned() {
   const std::int32_t n = store_.num_owned;
   const std::int64_t slab_size = world_->grid.slab_size();
-  bands_[Left].rows = {0, bands_[Left].exists ? cells_.first_row(slab_begin_ + 1, slab_size) : 0};
-  bands_[Right].rows = {bands_[Right].exists ? cells_.first_row(slab_end_ - 1, slab_size) : n, n};
+  band(Side::Left).rows = {
+      0, band(Side::Left).exists ? cells_.first_row(slab_begin_ + 1, slab_size) : 0};
+  band(Side::Right).rows = {
+      band(Side::Right).exists ? cells_.first_row(slab_end_ - 1, slab_size) : n, n};
   planes_.write(world_->grid, store_, {0, n});
   resize_with_room(row_begin_, static_cast<std::size_t>(n));
   pairs_.clear();
@@ -63,8 +65,8 @@ void Lane<Dim>::cut_blocks() {
   travel_ = 0.0;
   if (packs()) pairs_.prepare_packing();
   // Rows before the next pair's first row are complete, but for those of bands.
-  const std::int32_t first = bands_[Left].rows.end,
-                     last = std::max(first, bands_[Right].rows.begin);
+  const std::int32_t first = band(Side::Left).rows.end,
+                     last = std::max(first, band(Side::Right).rows.begin);
   for (std::int64_t k = 0; k < pairs_.size(); k += kBlockPairs) {
     Block& block = blocks_.emplace_back();
     block.begin = k, block.end = std::min(k + kBlockPairs, pairs_.size());
@@ -88,7 +90,7 @@ void Lane<Dim>::cut_chunks(std::int64_t chunk_pairs) {
       pairs = 0;
     }
   }
-  std::int32_t row = bands_[Left].rows.end;
+  std::int32_t row = band(Side::Left).rows.end;
   for (Block& block : blocks_) {
     const auto walls = walls_.list();
     const auto wall =
@@ -101,12 +103,12 @@ void Lane<Dim>::cut_chunks(std::int64_t chunk_pairs) {
 
 template <int Dim>
 void Lane<Dim>::list_across(Side side) {
-  Band& band = bands_[side];
+  Band& band = this->band(side);
   if (!band.exists) return;
   band.across.clear();
   const std::int64_t slab_size = world_->grid.slab_size();
   CellIndex own;  // the band's slab alone
-  own.slab_begin = side == Left ? slab_begin_ : slab_end_ - 1;
+  own.slab_begin = side == Side::Left ? slab_begin_ : slab_end_ - 1;
   own.slab_end = own.slab_begin + 1;
   own.first_key = own.slab_begin * slab_size;
   const auto from = cells_.start.begin() + (own.slab_begin - slab_begin_) * slab_size;
@@ -114,7 +116,7 @@ void Lane<Dim>::list_across(Side side) {
   band.planes.write(world_->grid, store_,
                     {band.ghost_cells.start.front(), band.ghost_cells.start.back()});
   ContactSearch<Dim>(world_->grid, store_, band.planes, search_rule())
-      .across(own, band.ghost_cells, side == Left ? -1 : 1, band.across);
+      .across(own, band.ghost_cells, side == Side::Left ? -1 : 1, band.across);
   band.across.pad(store_.waste());
   band.across.trim();
   band.across.reset_history(history_form().length);
@@ -135,7 +137,7 @@ void Lane<Dim>::research_owned() {
 template <int Dim>
 void Lane<Dim>::research_across(Side side) {
   const Stopwatch watch(search_seconds_.bands);
-  PairList& list = bands_[side].across;
+  PairList& list = band(side).across;
   KeptContacts before;  // of its own: the other band may be at it too
   keep_histories(list, before);
   list_across(side);

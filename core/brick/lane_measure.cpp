@@ -95,13 +95,13 @@ Measures Lane<Dim>::measure(const Vec3& gravity) {
   Measures m;
   measure_motion(store_, gravity, m);
   measure_pairs(*this, pairs_, m);
-  if (bands_[Left].exists)
-    measure_pairs(*this, bands_[Left].across, m);  // a pair across a cut counts on its right
+  if (band(Side::Left).exists)
+    measure_pairs(*this, band(Side::Left).across, m);  // a pair across a cut counts on its right
   measure_wall_contacts(*this, m);
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.bonds().size()); ++b) {
     // A bond across a cut counts on its right, too.
     const std::int32_t last = std::max(bonds_.end_a(b), bonds_.end_b(b));
-    if (bonds_.is_broken(b) || last >= store_.ghost_begin(Right)) continue;
+    if (bonds_.is_broken(b) || last >= store_.ghost_begin(Side::Right)) continue;
     m.elastic.add(bonds_.energy(b, store_, world_->bond_laws, world_->grid.box()));
     ++m.bonds;
   }

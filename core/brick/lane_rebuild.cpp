@@ -14,7 +14,8 @@ int Lane<Dim>::direction_of(std::int64_t key, std::int64_t key_before) const {
   const std::int64_t slab_size = world_->grid.slab_size();
   if (key >= slab_begin_ * slab_size && key < slab_end_ * slab_size) return 0;
   const int slab = static_cast<int>(key / slab_size);
-  if (!bands_[Left].exists || !bands_[Right].exists) return bands_[Right].exists ? 2 : 1;
+  if (!band(Side::Left).exists || !band(Side::Right).exists)
+    return band(Side::Right).exists ? 2 : 1;
   if (!world_->grid.is_periodic(0)) return slab >= slab_end_ ? 2 : 1;
   // It has gone the shorter way from where it was, maybe around an end of the box. From the new
   // strip the shorter way may be the wrong one: cuts move by up to a strip at a time.
@@ -26,8 +27,8 @@ int Lane<Dim>::direction_of(std::int64_t key, std::int64_t key_before) const {
 
 template <int Dim>
 bool Lane<Dim>::computes_bond(std::int32_t bond) const {
-  if (!bands_[Right].returns) return true;
-  const std::int32_t first_right_ghost = store_.ghost_begin(Right);
+  if (!band(Side::Right).returns) return true;
+  const std::int32_t first_right_ghost = store_.ghost_begin(Side::Right);
   return bonds_.end_a(bond) < first_right_ghost && bonds_.end_b(bond) < first_right_ghost;
 }
 
@@ -167,9 +168,9 @@ void Lane<Dim>::order() {
 template <int Dim>
 void Lane<Dim>::pack_ghosts(Side side, std::vector<std::byte>& message) const {
   const std::int64_t slab_size = world_->grid.slab_size();
-  const std::int32_t begin = side == Left ? 0 : cells_.first_row(slab_end_ - 1, slab_size);
+  const std::int32_t begin = side == Side::Left ? 0 : cells_.first_row(slab_end_ - 1, slab_size);
   const std::int32_t end =
-      side == Left ? cells_.first_row(slab_begin_ + 1, slab_size) : store_.num_owned;
+      side == Side::Left ? cells_.first_row(slab_begin_ + 1, slab_size) : store_.num_owned;
   std::vector<RowRecord<Dim>> records(static_cast<std::size_t>(end - begin));
   for (std::int32_t i = begin; i < end; ++i) {
     RowRecord<Dim>& record = records[static_cast<std::size_t>(i - begin)];
@@ -185,19 +186,20 @@ void Lane<Dim>::take_ghosts(std::span<const std::byte> left, std::span<const std
   const int num_slabs = world_->grid.num_slabs();
   const std::array<int, 2> slabs{(slab_begin_ - 1 + num_slabs) % num_slabs, slab_end_ % num_slabs};
   std::array<std::vector<RowRecord<Dim>>, 2> ghosts;
-  for (const Side side : {Left, Right}) {
-    if (!bands_[side].exists) continue;
-    ghosts[side] = decode_ghosts(side == Left ? left : right, *world_, slabs[side]);
-    store_.num_ghosts[side] = static_cast<std::int32_t>(ghosts[side].size());
+  for (const Side side : kSides) {
+    if (!band(side).exists) continue;
+    ghosts[index_of(side)] =
+        decode_ghosts(side == Side::Left ? left : right, *world_, slabs[index_of(side)]);
+    store_.num_ghosts[index_of(side)] = static_cast<std::int32_t>(ghosts[index_of(side)].size());
   }
   store_.resize_for_ghosts(world_->grain.rounder());
-  for (const Side side : {Left, Right}) {
-    if (!bands_[side].exists) continue;
+  for (const Side side : kSides) {
+    if (!band(side).exists) continue;
     std::int32_t row = store_.ghost_begin(side);
     const std::int32_t begin = row;
-    for (const RowRecord<Dim>& record : ghosts[side]) record.put(store_, row++);
-    bands_[side].ghost_cells.index(world_->grid, store_, {begin, row}, slabs[side],
-                                   slabs[side] + 1);
+    for (const RowRecord<Dim>& record : ghosts[index_of(side)]) record.put(store_, row++);
+    band(side).ghost_cells.index(world_->grid, store_, {begin, row}, slabs[index_of(side)],
+                                 slabs[index_of(side)] + 1);
     const Stopwatch watch(search_seconds_.rebuild);
     list_across(side);
   }

@@ -15,9 +15,10 @@ namespace barchan {
 
 template <int Dim>
 std::size_t Lane<Dim>::results_bytes(Side side) const {
-  const auto group = side == Left ? BondSet<Dim>::Left : BondSet<Dim>::Right;
-  const Rows band = bands_[Right].rows;
-  const std::int32_t rows = side == Left ? store_.num_ghosts[Left] : band.end - band.begin;
+  const auto group = BondSet<Dim>::across(side);
+  const Rows band = this->band(Side::Right).rows;
+  const std::int32_t rows =
+      side == Side::Left ? store_.num_ghosts[index_of(Side::Left)] : band.end - band.begin;
   return (static_cast<std::size_t>(rows) * L::kForce +
           static_cast<std::size_t>(bonds_.size(group)) * BondSet<Dim>::kExported) *
          sizeof(double);
@@ -25,19 +26,22 @@ std::size_t Lane<Dim>::results_bytes(Side side) const {
 
 template <int Dim>
 void Lane<Dim>::results(std::vector<double>& out) {
-  const auto first = store_.force.begin() + std::ptrdiff_t{store_.ghost_begin(Left)} * L::kForce;
-  const auto last = first + std::ptrdiff_t{store_.num_ghosts[Left]} * L::kForce;
-  store_.take_out(world_->grain.rounder(), store_.ghost_begin(Left), store_.ghost_begin(Right));
+  const auto first =
+      store_.force.begin() + std::ptrdiff_t{store_.ghost_begin(Side::Left)} * L::kForce;
+  const auto last = first + std::ptrdiff_t{store_.num_ghosts[index_of(Side::Left)]} * L::kForce;
+  store_.take_out(world_->grain.rounder(), store_.ghost_begin(Side::Left),
+                  store_.ghost_begin(Side::Right));
   out.assign(first, last);
-  store_.start_forces(world_->grain.rounder(), store_.ghost_begin(Left), store_.ghost_begin(Right));
+  store_.start_forces(world_->grain.rounder(), store_.ghost_begin(Side::Left),
+                      store_.ghost_begin(Side::Right));
   bonds_.export_group(BondSet<Dim>::Left, out);
 }
 
 template <int Dim>
 void Lane<Dim>::finish_right_band(std::span<const double> results) {
   const simd::DenormalsAreZero quiet;
-  const Rows rows = bands_[Right].rows;
-  if (results.size() * sizeof(double) != results_bytes(Right)) {
+  const Rows rows = band(Side::Right).rows;
+  if (results.size() * sizeof(double) != results_bytes(Side::Right)) {
     throw RunError("a results message has " + std::to_string(results.size()) + " numbers for " +
                    std::to_string(rows.end - rows.begin) + " particles and " +
                    std::to_string(bonds_.size(BondSet<Dim>::Right)) + " bonds");

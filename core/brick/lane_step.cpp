@@ -57,7 +57,7 @@ void Lane<Dim>::begin_step(const StepFrame& frame) {
   looks_ = std::exchange(has_quick_, false) && frame_.has_moved(world_->dt);
   if (world_->search == ContactSearchKind::AllPairs) research_owned();
   if (looks_) PassageWatch<Dim>(*world_, store_, passage_).look_at(pairs_);
-  rows_done_ = bands_[Left].exists ? bands_[Left].rows.end : 0;
+  rows_done_ = band(Side::Left).exists ? band(Side::Left).rows.end : 0;
   wall_sums_.resize(world_->walls.size());
   const bool is_carry_due = ++steps_since_start_ % kCarryEvery == 0;
   for (WallSums& sums : wall_sums_) {
@@ -138,8 +138,7 @@ void Lane<Dim>::wrap_rows(Rows rows) {
 
 template <int Dim>
 void Lane<Dim>::unpack_halo(Side side, std::span<const std::byte> message) {
-  const std::int32_t begin = store_.ghost_begin(side),
-                     n = store_.num_ghosts[static_cast<std::size_t>(side)];
+  const std::int32_t begin = store_.ghost_begin(side), n = store_.num_ghosts[index_of(side)];
   if (message.size() != static_cast<std::size_t>(n) * halo_record_bytes<Dim>()) {
     throw RunError("a halo message has " + std::to_string(message.size()) + " bytes for " +
                    std::to_string(n) + " ghosts");
@@ -157,20 +156,20 @@ void Lane<Dim>::unpack_halo(Side side, std::span<const std::byte> message) {
     top2 = std::max(top2, v[0] * v[0] + v[1] * v[1] + (Dim == 3 ? v[2] * v[2] : 0.0));
   }
   const double travel = std::sqrt(top2) * world_->dt;
-  bands_[side].travel += travel;
-  bands_[side].has_quick = travel > world_->quick_travel;
+  band(side).travel += travel;
+  band(side).has_quick = travel > world_->quick_travel;
 }
 
 template <int Dim>
 std::size_t Lane<Dim>::halo_bytes(Side side) const {
-  const Rows rows = bands_[side].rows;
+  const Rows rows = band(side).rows;
   return static_cast<std::size_t>(rows.end - rows.begin) * halo_record_bytes<Dim>();
 }
 
 template <int Dim>
 void Lane<Dim>::pack_halo(Side side, std::span<std::byte> message) const {
   std::byte* to = message.data();
-  const Rows rows = bands_[side].rows;
+  const Rows rows = band(side).rows;
   for (std::int32_t i = rows.begin; i < rows.end; ++i) {
     for_each_field<Dim>([&]<class T>(const Field<Dim, T>& field) {
       if (!field.is_in_halo) return;
@@ -184,13 +183,13 @@ void Lane<Dim>::pack_halo(Side side, std::span<std::byte> message) const {
 template <int Dim>
 void Lane<Dim>::finish_band(Side side) {
   const simd::DenormalsAreZero quiet;
-  Band& band = bands_[side];
+  Band& band = this->band(side);
   if (world_->search == ContactSearchKind::AllPairs) research_across(side);
   if (looks_ || (band.has_quick && frame_.has_moved(world_->dt)))
     PassageWatch<Dim>(*world_, store_, passage_).look_at(band.across);
   // Bonds come before contacts here too, as in begin_step: a pair whose bond breaks is in contact
   // in the same step.
-  if (!bonds_.empty()) compute_bonds(side == Left ? BondSet<Dim>::Left : BondSet<Dim>::Right);
+  if (!bonds_.empty()) compute_bonds(BondSet<Dim>::across(side));
   for (PairBlock& block : band.blocks)
     world_->kernels.pairs(block_job(band.across, block, 0.5 * (travel_ + band.travel)));
   finish_rows(band.rows.begin, band.rows.end, true);
@@ -207,7 +206,7 @@ void Lane<Dim>::compute_bonds(typename BondSet<Dim>::Group group) {
   if (group == BondSet<Dim>::Owned)
     unpack_history();
   else
-    unpack_history_across(group == BondSet<Dim>::Left ? Left : Right);
+    unpack_history_across(group == BondSet<Dim>::Left ? Side::Left : Side::Right);
 }
 
 template <int Dim>

@@ -155,12 +155,12 @@ void Lane<Dim>::pack(PairList& list, PairBlock& block, const std::uint8_t* masks
 template <int Dim>
 void Lane<Dim>::unpack_history() {
   for (Block& block : blocks_) unpack(pairs_, block);
-  for (const Side side : {Left, Right}) unpack_history_across(side);
+  for (const Side side : kSides) unpack_history_across(side);
 }
 
 template <int Dim>
 void Lane<Dim>::unpack_history_across(Side side) {
-  for (PairBlock& block : bands_[side].blocks) unpack(bands_[side].across, block);
+  for (PairBlock& block : band(side).blocks) unpack(band(side).across, block);
 }
 
 template class Lane<2>;

@@ -58,7 +58,7 @@ std::vector<Departure> Lane<Dim>::outside(std::int64_t step) const {
 template <int Dim>
 bool Lane<Dim>::counts_bond(std::int32_t bond) const {
   return !bonds_.is_broken(bond) &&
-         std::max(bonds_.end_a(bond), bonds_.end_b(bond)) < store_.ghost_begin(Right);
+         std::max(bonds_.end_a(bond), bonds_.end_b(bond)) < store_.ghost_begin(Side::Right);
 }
 
 template <int Dim>
@@ -74,7 +74,7 @@ LinkCounts Lane<Dim>::remove(std::span<const std::int64_t> ids) {
     }
   };
   count(pairs_);
-  if (bands_[Left].exists) count(bands_[Left].across);
+  if (band(Side::Left).exists) count(band(Side::Left).across);
   for (const WallContact<Dim>& c : walls_.list())
     gone.wall_contacts += has_history(c) && is_removed(c.row) ? 1 : 0;
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.bonds().size()); ++b) {
@@ -170,7 +170,7 @@ WorstOverlap Lane<Dim>::worst_overlap() const {
   WorstOverlap worst;
   const PeriodicBox& box = world_->grid.box();
   take_worst_pair(store_, box, pairs_, worst);
-  if (bands_[Left].exists) take_worst_pair(store_, box, bands_[Left].across, worst);
+  if (band(Side::Left).exists) take_worst_pair(store_, box, band(Side::Left).across, worst);
   for (const WallContact<Dim>& c : walls_.list()) {
     const auto w = static_cast<std::size_t>(c.wall);
     const double radius = store_.radius(c.row);

@@ -94,7 +94,7 @@ void BondSet<Dim>::resolve(ParticleStore<Dim>& store) {
   const auto group = [&](const Bond<Dim>& b) {
     const std::int32_t last = std::max(find(b.id_a), find(b.id_b));
     if (store.is_owned(last)) return Owned;
-    return last < store.ghost_begin(1) ? Left : Right;
+    return last < store.ghost_begin(Side::Right) ? Left : Right;
   };
   std::sort(bonds_.begin(), bonds_.end(), [&](const Bond<Dim>& p, const Bond<Dim>& q) {
     return std::tuple(group(p), p.id_a, p.id_b) < std::tuple(group(q), q.id_a, q.id_b);

@@ -48,6 +48,9 @@ class BondSet {
  public:
   /// Both ends owned, or the other end a ghost of that side.
   enum Group { Owned, Left, Right, kNumGroups };
+  [[nodiscard]] static constexpr Group across(Side side) {
+    return side == Side::Left ? Left : Right;
+  }
 
   /// Takes a bond; if it is known, its state is replaced when `is_current`. @pre resolve() before
   /// the next step

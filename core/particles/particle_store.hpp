@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include <barchan/core/base/side.hpp>
 #include <barchan/core/particles/layout.hpp>
 
 namespace barchan {
@@ -33,8 +34,8 @@ struct ParticleStore {
   enum Flag : std::uint8_t { kFixed = 1, kBonded = 2 };
 
   [[nodiscard]] std::int32_t waste() const { return num_owned; }
-  [[nodiscard]] std::int32_t ghost_begin(int side) const {
-    return num_owned + 2 + (side == 1 ? num_ghosts[0] : 0);
+  [[nodiscard]] std::int32_t ghost_begin(Side side) const {
+    return num_owned + 2 + (side == Side::Right ? num_ghosts[0] : 0);
   }
   [[nodiscard]] std::int32_t size() const { return num_owned + 2 + num_ghosts[0] + num_ghosts[1]; }
   [[nodiscard]] bool is_owned(std::int32_t i) const { return i < num_owned; }

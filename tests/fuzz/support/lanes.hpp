@@ -21,15 +21,13 @@ using Bytes = std::vector<std::byte>;
 template <int Dim>
 class Sample {
  public:
-  using Side = typename Lane<Dim>::Side;
-
   /// @param returns  the published exchange: the lane on the right computes the pairs of the cut
   explicit Sample(bool returns = false) : world_(make_world()) {
     for (auto& lane : lanes_) lane = std::make_unique<Lane<Dim>>(world_);
-    lanes_[0]->band(Lane<Dim>::Right).exists = true;
-    lanes_[0]->band(Lane<Dim>::Right).returns = returns;
-    lanes_[1]->band(Lane<Dim>::Left).exists = true;
-    lanes_[1]->band(Lane<Dim>::Left).returns = returns;
+    lanes_[0]->band(Side::Right).exists = true;
+    lanes_[0]->band(Side::Right).returns = returns;
+    lanes_[1]->band(Side::Left).exists = true;
+    lanes_[1]->band(Side::Left).returns = returns;
   }
 
   [[nodiscard]] const World<Dim>& world() const { return world_; }
@@ -85,7 +83,7 @@ class Sample {
   void results(Change&& change) {
     seed();
     begin_step();
-    lanes_[1]->finish_band(Lane<Dim>::Left);
+    lanes_[1]->finish_band(Side::Left);
     const std::vector<double> sent = returned_forces();
     const auto raw = std::as_bytes(std::span(sent));
     Bytes message(raw.begin(), raw.end());
@@ -181,8 +179,8 @@ class Sample {
   template <class Change>
   void exchange_ghosts(bool to_right, Change&& change) {
     Bytes left, right;  // to the lane on that side
-    lanes_[0]->pack_ghosts(Lane<Dim>::Right, right);
-    lanes_[1]->pack_ghosts(Lane<Dim>::Left, left);
+    lanes_[0]->pack_ghosts(Side::Right, right);
+    lanes_[1]->pack_ghosts(Side::Left, left);
     change(to_right ? right : left);
     for (auto& lane : lanes_) lane->list_owned();
     lanes_[0]->take_ghosts({}, left);
@@ -203,18 +201,17 @@ class Sample {
   template <class Change>
   void step(bool to_right, Change&& change) {
     begin_step();
-    lanes_[1]->finish_band(Lane<Dim>::Left);
-    if (lanes_[0]->band(Lane<Dim>::Right).returns)
+    lanes_[1]->finish_band(Side::Left);
+    if (lanes_[0]->band(Side::Right).returns)
       lanes_[0]->finish_right_band(returned_forces());
     else
-      lanes_[0]->finish_band(Lane<Dim>::Right);
-    Bytes right(lanes_[0]->halo_bytes(Lane<Dim>::Right)),
-        left(lanes_[1]->halo_bytes(Lane<Dim>::Left));
-    lanes_[0]->pack_halo(Lane<Dim>::Right, right);
-    lanes_[1]->pack_halo(Lane<Dim>::Left, left);
+      lanes_[0]->finish_band(Side::Right);
+    Bytes right(lanes_[0]->halo_bytes(Side::Right)), left(lanes_[1]->halo_bytes(Side::Left));
+    lanes_[0]->pack_halo(Side::Right, right);
+    lanes_[1]->pack_halo(Side::Left, left);
     change(to_right ? right : left);
-    lanes_[0]->unpack_halo(Lane<Dim>::Right, left);
-    lanes_[1]->unpack_halo(Lane<Dim>::Left, right);
+    lanes_[0]->unpack_halo(Side::Right, left);
+    lanes_[1]->unpack_halo(Side::Left, right);
   }
   void step() {
     step(true, [](Bytes&) {});

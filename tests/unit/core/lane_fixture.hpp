@@ -124,8 +124,8 @@ class Lanes {
     for (std::size_t l = 0; l < lanes_.size(); ++l)
       lanes_[l]->begin_rebuild(cuts_[l], cuts_[l + 1], left[l], right[l]);
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      if (lanes_[l]->band(Lane<Dim>::Left).exists) lanes_[l]->absorb(right[before(l)]);
-      if (lanes_[l]->band(Lane<Dim>::Right).exists) lanes_[l]->absorb(left[after(l)]);
+      if (lanes_[l]->band(Side::Left).exists) lanes_[l]->absorb(right[before(l)]);
+      if (lanes_[l]->band(Side::Right).exists) lanes_[l]->absorb(left[after(l)]);
     }
     for (auto& lane : lanes_) lane->order();
     exchange_ghosts();
@@ -138,15 +138,13 @@ class Lanes {
       for (int c = 0; c < lane->num_chunks(); ++c) lane->run_chunk(c);
     }
     for (auto& lane : lanes_) {
-      for (const auto side : {Lane<Dim>::Left, Lane<Dim>::Right}) {
+      for (const auto side : kSides) {
         if (lane->band(side).exists) lane->finish_band(side);
       }
     }
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      if (lanes_[l]->band(Lane<Dim>::Left).exists)
-        send(before(l), Lane<Dim>::Right, l, Lane<Dim>::Left);
-      if (lanes_[l]->band(Lane<Dim>::Right).exists)
-        send(after(l), Lane<Dim>::Left, l, Lane<Dim>::Right);
+      if (lanes_[l]->band(Side::Left).exists) send(before(l), Side::Right, l, Side::Left);
+      if (lanes_[l]->band(Side::Right).exists) send(after(l), Side::Left, l, Side::Right);
     }
   }
 
@@ -171,7 +169,7 @@ class Lanes {
         }
       };
       take(lane->pairs());
-      for (const auto side : {Lane<Dim>::Left, Lane<Dim>::Right}) {
+      for (const auto side : kSides) {
         if (lane->band(side).exists) take(lane->band(side).across);
       }
     }
@@ -194,7 +192,7 @@ class Lanes {
 
   void place_band(std::size_t l) {
     const bool wraps = world_->grid.is_periodic(0) && lanes_.size() > 1;
-    Band &left = lanes_[l]->band(Lane<Dim>::Left), &right = lanes_[l]->band(Lane<Dim>::Right);
+    Band &left = lanes_[l]->band(Side::Left), &right = lanes_[l]->band(Side::Right);
     left.exists = l > 0 || wraps;
     right.exists = l + 1 < lanes_.size() || wraps;
   }
@@ -202,9 +200,8 @@ class Lanes {
   void exchange_ghosts() {
     std::vector<std::vector<std::byte>> left(lanes_.size()), right(lanes_.size());
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      if (lanes_[l]->band(Lane<Dim>::Left).exists) lanes_[l]->pack_ghosts(Lane<Dim>::Left, left[l]);
-      if (lanes_[l]->band(Lane<Dim>::Right).exists)
-        lanes_[l]->pack_ghosts(Lane<Dim>::Right, right[l]);
+      if (lanes_[l]->band(Side::Left).exists) lanes_[l]->pack_ghosts(Side::Left, left[l]);
+      if (lanes_[l]->band(Side::Right).exists) lanes_[l]->pack_ghosts(Side::Right, right[l]);
       lanes_[l]->list_owned();
     }
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
@@ -214,8 +211,7 @@ class Lanes {
     }
   }
 
-  void send(std::size_t from, typename Lane<Dim>::Side from_side, std::size_t to,
-            typename Lane<Dim>::Side to_side) {
+  void send(std::size_t from, Side from_side, std::size_t to, Side to_side) {
     std::vector<std::byte> message(lanes_[from]->halo_bytes(from_side));
     lanes_[from]->pack_halo(from_side, message);
     lanes_[to]->unpack_halo(to_side, message);

@@ -130,8 +130,8 @@ void expect_found_across_cuts(bool is_periodic) {
     for (std::size_t l = 0; l < lanes.size(); ++l) {
       append(lanes[l], lanes[l].pairs(), found, nullptr);
       IdPairs once_more;  // the other side of a cut finds the same pairs again
-      append(lanes[l], lanes[l].band(Lane<Dim>::Left).across, once_more, nullptr);
-      append(lanes[l], lanes[l].band(Lane<Dim>::Right).across, once_more, nullptr);
+      append(lanes[l], lanes[l].band(Side::Left).across, once_more, nullptr);
+      append(lanes[l], lanes[l].band(Side::Right).across, once_more, nullptr);
       found.insert(once_more.begin(), once_more.end());
     }
 
