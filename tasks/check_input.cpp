@@ -12,8 +12,12 @@
 #include <barchan/core/base/bytes.hpp>
 #include <barchan/core/base/error.hpp>
 #include <barchan/core/checkpoint/state.hpp>
+#include <barchan/core/generators/check_walls.hpp>
+#include <barchan/core/generators/make_particles.hpp>
 #include <barchan/core/model/digest.hpp>
 #include <barchan/core/model/validate.hpp>
+#include <barchan/tasks/forecast.hpp>
+#include <barchan/tasks/stability.hpp>
 
 namespace barchan {
 namespace {
@@ -36,7 +40,7 @@ std::uint64_t hash_of(const Model& model) {
 /// Of what ranks must agree on.
 std::uint64_t hash_of(const RunOptions& options) {
   return hash_of(fmt::format("{} {} {} {} {}", options.threads, options.exchange, options.trace,
-                             options.tape != nullptr, options.ranks_per_node));
+                             options.tape != nullptr, options.hooks.ranks_per_node));
 }
 
 /// What a rank says when its word differs from that of rank 0.
@@ -80,6 +84,10 @@ void check_input(const Communicator& communicator, const Model& model, const Par
             "differ from those of rank 0 (give every rank all particles, in the same order)"});
   validate(model);
   check_thread_level(communicator, has_several_threads(options));
+  check_particles(model, particles);
+  check_walls(model, particles);
+  check_time_step(model, step_limits(model, particles));
+  check_precision(model, particles);
 }
 
 void check_input(const Communicator& communicator, const Model& model,

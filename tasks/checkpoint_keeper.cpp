@@ -82,13 +82,13 @@ bool CheckpointKeeper::is_due(std::int64_t step) const {
 
 bool CheckpointKeeper::is_overdue() const {
   if (!communicator_.is_root() || spec_.every_seconds <= 0.0) return false;
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - last_time_).count() >=
-         spec_.every_seconds;
+  return 1e-9 * static_cast<double>(now_ns() - last_time_) >= spec_.every_seconds;
 }
 
 CheckpointCopy& CheckpointKeeper::begin() {
   wait_idle();
-  last_time_ = std::chrono::steady_clock::now();
+  is_demanded_ = false;
+  last_time_ = now_ns();
   return copy_;
 }
 

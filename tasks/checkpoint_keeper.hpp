@@ -1,12 +1,12 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include <barchan/comm/base/clock.hpp>
 #include <barchan/comm/base/reduction.hpp>
 #include <barchan/core/checkpoint/checkpoint_folder.hpp>
 #include <barchan/core/model/model.hpp>
@@ -47,6 +47,9 @@ class CheckpointKeeper {
   [[nodiscard]] bool is_due(std::int64_t step) const;
   /// By the clock: what this rank thinks; all ranks must agree first.
   [[nodiscard]] bool is_overdue() const;
+
+  void demand() { is_demanded_ = true; }  ///< a checkpoint, as all ranks agreed
+  [[nodiscard]] bool is_demanded() const { return is_demanded_; }
 
   /// Waits for the checkpoint before. @return the memory to copy the state to
   CheckpointCopy& begin();
@@ -92,11 +95,12 @@ class CheckpointKeeper {
   int code_ = 0;  ///< errno of the thread's work, 0 when it went well; read after is_done_
   RankFileSeal seal_;
 
+  bool is_demanded_ = false;
   std::int64_t last_begun_ = -1;
   bool last_is_good_ = false;
   std::string last_complete_;
   std::vector<std::string> warnings_;
-  std::chrono::steady_clock::time_point last_time_ = std::chrono::steady_clock::now();
+  std::int64_t last_time_ = now_ns();
   int num_exceptions_;
 };
 

@@ -1,10 +1,7 @@
 #include <barchan/tasks/engine.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <exception>
-#include <limits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,36 +9,94 @@
 #include <barchan/comm/base/clock.hpp>
 #include <barchan/comm/base/mpi_session.hpp>
 #include <barchan/core/base/error.hpp>
-#include <barchan/core/generators/check_walls.hpp>
+#include <barchan/tasks/appearing_walls.hpp>
+#include <barchan/tasks/exchange_setup.hpp>
+#include <barchan/tasks/forecast.hpp>
+#include <barchan/tasks/parts_checkpoint.hpp>
+#include <barchan/tasks/stability.hpp>
 #include <barchan/tasks/stop_request.hpp>
+#include <barchan/tasks/wrong_step.hpp>
 
 namespace barchan {
 namespace {
 
-constexpr double kChunkSeconds = 100e-6;
-constexpr std::int64_t kLeastChunk = 2048, kMostChunk = 1 << 20;  // pairs
-constexpr std::int64_t kStageCheck = 100;  // steps between looks at the kinetic ratio
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+double seconds_since(std::int64_t begin) {
+  return 1e-9 * static_cast<double>(now_ns() - begin);
 }
 
 }  // namespace
 
+template <int Dim>
+Simulation::EngineOf<Dim>::EngineOf(const Model& model, Communicator communicator,
+                                    const RunOptions& options, const WorldScale& scale)
+    : Engine(model, std::move(communicator), options),
+      parts_(model_, communicator_, options_, scale),
+      graph_(parts_.strip, options_),
+      schedule_(communicator_, parts_.world.skin, parts_.world.dt, model_.gravity.norm(),
+                kEventSteps),
+      lists_(parts_, graph_, schedule_, options_),
+      watch_(parts_, graph_, population_, notes_),
+      plates_(communicator_, parts_.world.wall_specs, parts_.world.dt) {}
+
+template <int Dim>
+Simulation::EngineOf<Dim>::EngineOf(const Model& model, const ParticleSet& particles,
+                                    Communicator communicator, const RunOptions& options)
+    : EngineOf(model, std::move(communicator), options, scale_of(model, particles)) {
+  population_.size = static_cast<std::int64_t>(particles.particles.size());
+  for (const ParticleData& p : particles.particles)
+    parts_.world.quick_travel = std::min(parts_.world.quick_travel, 0.5 * p.radius);
+  parts_.rebuild.seed(particles);
+  begin_loop();
+  schedule_.begin(0, lists_.top_speed());
+  if (!communicator_.is_root()) return;
+  for (const std::string& warning : precision_warnings(model_, particles))
+    notes_.add(0, warning, true);
+  const std::string coarse = coarse_grain_warning(parts_.world.grain, model_, particles);
+  if (!coarse.empty()) notes_.add(0, coarse, true);
+}
+
+template <int Dim>
+Simulation::EngineOf<Dim>::EngineOf(const Model& model, const OpenCheckpoint& checkpoint,
+                                    Communicator communicator, const RunOptions& options)
+    : EngineOf(model, std::move(communicator), options, scale_of(checkpoint.state, model)) {
+  const CheckpointState& s = checkpoint.state;
+  restored_from_ = checkpoint.path;
+  population_.size = restore_parts(parts_, checkpoint);
+  population_.left = s.left;
+  lists_.note_walls();
+  begin_loop();
+  step_ = s.step;
+  stages_.restore(s);
+  schedule_.restore(step_, lists_.top_speed(), s.look,
+                    communicator_.is_root() ? population_.size : 0);
+}
+
+template <int Dim>
+void Simulation::EngineOf<Dim>::begin_loop() {
+  choice_ = settle_exchange(parts_.strip, options_, communicator_);
+  parts_.rebuild.restart_waits();
+  growth_.look(parts_, step_, notes_);
+  if (!options_.trace) return;
+  trace_ = std::make_unique<Trace>(communicator_, parts_.strip.neighbours(), options_.threads,
+                                   options_.trace_events);
+  graph_.set_trace(trace_.get());
+  parts_.strip.set_trace(trace_.get());
+}
+
 /// Some exchanges cannot be taken down while a message is on its way.
 template <int Dim>
 Simulation::EngineOf<Dim>::~EngineOf() {
-  if (is_in_step_ || strip_ == nullptr || std::uncaught_exceptions() > 0) return;
+  if (is_in_step_ || std::uncaught_exceptions() > 0) return;
   if (!is_mpi_initialized()) return;  // nothing of MPI is left to be taken down
   try {
-    strip_->complete_halo();
+    parts_.strip.complete_halo();
   } catch (const std::exception&) {  // the others are gone
   }
 }
 
 template <int Dim>
 std::int64_t Simulation::EngineOf<Dim>::run(std::int64_t num_steps) {
-  const double begin = now();
+  const std::int64_t begin = now_ns();
   std::int64_t done = 0;
   stopped_ = stopped_ && num_steps == 0;
   try {
@@ -54,8 +109,8 @@ std::int64_t Simulation::EngineOf<Dim>::run(std::int64_t num_steps) {
     failure_ = std::current_exception();
     throw;
   }
-  loop_seconds_ += now() - begin;
-  loop_steps_ += done;
+  loop_.loop += seconds_since(begin);
+  loop_.steps += done;
   return done;
 }
 
@@ -63,32 +118,111 @@ std::int64_t Simulation::EngineOf<Dim>::run(std::int64_t num_steps) {
 template <int Dim>
 std::int64_t Simulation::EngineOf<Dim>::go_on(std::int64_t most) {
   is_in_step_ = true;
-  if (trace_) trace_->begin_step(step_);
-  strip_->step = step_;
-  if (keeper_) keep_checkpoints();
-  update_stage();
-  update_lists();
-  watch_plates();
-  if (schedule_->is_check_due(step_))
-    schedule_->begin_check(check_numbers(), {stop_is_requested(), wants_checkpoint()});
-  schedule_->poll();
-
+  prepare_step();
   StepFrame frame;
   frame.step = step_;
-  frame.kick = step_ == 0 ? 0.5 * world_.dt : world_.dt;
+  frame.kick = step_ == 0 ? 0.5 * parts_.world.dt : parts_.world.dt;
   for (int c = 0; c < 3; ++c) frame.gravity[c] = model_.gravity[c];
-  frame.local_damping = model_.stages[static_cast<std::size_t>(stage_)].local_damping;
+  frame.local_damping = stages_.spec().local_damping;
   const int steps = steps_in_a_go(most);
-  const bool drives_plates = plates_->are_driven(world_.walls);
-  if (drives_plates) press_plates(frame);
-  graph_->run(frame, steps);
-  stop_if_wrong();
-
-  if (drives_plates) kick_plates();
-  plates_->move(world_.walls);
+  const bool drives_plates = plates_.are_driven(walls());
+  if (drives_plates) {
+    // Contacts with plates are few, so one thread does all lanes.
+    const std::span<WallSums> sums = plates_.start_sums();
+    for (Lane<Dim>& lane : parts_.strip.lanes()) lane.press_plates(frame, sums);
+    plates_.begin(sums);
+  }
+  graph_.run(frame, steps);
+  if (const int nth = wrong_step(parts_.strip, graph_); nth > 0) {
+    step_ += nth - 1;
+    report_wrong_step(parts_, graph_, nth, step_);
+  }
+  if (drives_plates) {
+    // All ranks know the work of a plate; the first one counts it.
+    plates_.kick(parts_.world.walls, stages_.begins_at(step_) ? stages_.current() : -1,
+                 communicator_.is_root() ? std::span(parts_.strip.lane(0).wall_sums())
+                                         : std::span<WallSums>());
+  }
+  plates_.move(parts_.world.walls);
   step_ += steps;
   is_in_step_ = false;
   return steps;
+}
+
+/// All that comes between two steps.
+template <int Dim>
+void Simulation::EngineOf<Dim>::prepare_step() {
+  if (trace_) trace_->begin_step(step_);
+  parts_.strip.step = step_;
+  if (keeper_) keeper_->poll();
+  if (keeper_ && (keeper_->is_demanded() || keeper_->is_due(step_))) save_checkpoint();
+  if (!stages_.is_last() && stage_is_over()) {
+    stages_.enter_next(step_);
+    if (show_walls(parts_, stages_, step_)) lists_.demand();  // walls come into the lists
+  }
+  update_lists();
+  watch_.judge_plates(step_);
+  if (schedule_.is_check_due(step_)) begin_check();
+  schedule_.poll();
+}
+
+template <int Dim>
+bool Simulation::EngineOf<Dim>::stage_is_over() {
+  if (step_ == 0 || !stages_.may_end(step_)) return false;
+  if (stages_.time_is_over(step_)) return true;
+  return taped_verdict(communicator_, [&] {
+    const Measures m = measure();
+    return m.kinetic.value() < stages_.spec().kinetic_ratio * m.elastic.value();
+  });
+}
+
+/// The run ends with its last stage, between two steps; a restart from there comes to the same
+/// verdict.
+template <int Dim>
+bool Simulation::EngineOf<Dim>::last_stage_ends() {
+  if (is_over_ || !stages_.is_last() || !stage_is_over()) return is_over_;
+  is_over_ = true;
+  if (communicator_.is_root())
+    notes_.add(step_, fmt::format("the last stage, '{}', is over, and the run with it",
+                                  stages_.spec().name));
+  return true;
+}
+
+/// Takes the last check's answer when its time has come, and makes lists anew where somebody asks
+/// for it.
+template <int Dim>
+void Simulation::EngineOf<Dim>::update_lists() {
+  const bool have_ended = schedule_.must_rebuild(step_);
+  if (schedule_.take_stop_agreed()) {
+    stopped_ = true;
+    forget_stop_request();
+  }
+  if (schedule_.take_save_agreed()) {
+    if (keeper_) keeper_->demand();
+    forget_checkpoint_request();
+  }
+  if (const auto answer = schedule_.take_answer()) {
+    watch_.judge(step_, *answer);
+    lists_.take_skin(answer->skin);
+  }
+  if (watch_.remove_outside(step_)) lists_.demand();
+  if (!have_ended && !lists_.are_demanded(step_)) return;
+  lists_.renew(step_);
+  growth_.look(parts_, step_, notes_);
+}
+
+template <int Dim>
+void Simulation::EngineOf<Dim>::begin_check() {
+  const Travel travel = lists_.travel();
+  CheckNumbers mine;
+  mine.distance = std::sqrt(travel.distance2);
+  mine.speed = std::sqrt(travel.speed2);
+  mine.skin = lists_.wished_skin(step_);
+  if (schedule_.is_look(step_)) watch_.look(step_, mine);
+  watch_.count(mine);
+  const bool wants_to_save =
+      keeper_ != nullptr && (checkpoint_is_requested() || keeper_->is_overdue());
+  schedule_.begin_check(mine, {stop_is_requested(), wants_to_save});
 }
 
 /// Lanes need not wait for each other between steps at which nobody looks at all of them. With
@@ -96,227 +230,68 @@ std::int64_t Simulation::EngineOf<Dim>::go_on(std::int64_t most) {
 /// the check: what all lanes do until then is known.
 template <int Dim>
 int Simulation::EngineOf<Dim>::steps_in_a_go(std::int64_t most) {
-  if (strip_->exchange() != nullptr || strip_->num_lanes() == 1 || step_ == 0) return 1;
-  const bool walls_stand = std::all_of(
-      world_.walls.begin(), world_.walls.end(),
-      [](const WallState& wall) { return !wall.is_active || wall.velocity == Vec3::Zero(); });
-  if (!is_last_stage() || !walls_stand || plates_->are_driven(world_.walls)) return 1;
+  if (parts_.strip.exchange() != nullptr || parts_.strip.num_lanes() == 1 || step_ == 0) return 1;
+  if (!stages_.is_last() || !plates_.stand_still(walls())) return 1;
   const auto steps_until = [&](std::int64_t end) {
     std::int64_t steps = 1;
     end = std::min(end, step_ + most);
     while (step_ + steps < end && !(keeper_ && keeper_->is_due(step_ + steps)) &&
-           !stage_may_end(step_ + steps))
+           !stages_.may_end(step_ + steps))
       ++steps;
     return static_cast<int>(steps);
   };
-  if (schedule_->is_check_due(step_)) {
-    const auto foreseen = schedule_->foresee();
+  if (schedule_.is_check_due(step_)) {
+    const auto foreseen = schedule_.foresee();
     const int steps =
-        foreseen && is_harmless(foreseen->answer) ? steps_until(foreseen->next_check) : 0;
+        foreseen && watch_.is_harmless(foreseen->answer) ? steps_until(foreseen->next_check) : 0;
     if (steps > RebuildSchedule::kLag) {
-      (void)schedule_->must_rebuild(step_ + RebuildSchedule::kLag);
-      (void)schedule_->take_answer();
+      (void)schedule_.must_rebuild(step_ + RebuildSchedule::kLag);
+      (void)schedule_.take_answer();
       return steps;
     }
   }
-  return steps_until(schedule_->next_part(step_));
-}
-
-/// The earliest step in which a lane went wrong, and in that the lowest ids of two that passed each
-/// other, or of a fast particle, or the lane with the particle that bore most.
-template <int Dim>
-void Simulation::EngineOf<Dim>::stop_if_wrong() {
-  int steps = std::numeric_limits<int>::max();
-  for (int l = 0; l < strip_->num_lanes(); ++l) {
-    if (strip_->lane(l).must_stop()) steps = std::min(steps, graph_->steps_done(l));
-  }
-  if (steps == std::numeric_limits<int>::max()) return;
-  step_ += steps - 1;
-  int fast = -1, pressed = -1;
-  Passage passage;
-  const auto id_in = [this](int l) {
-    const Lane<Dim>& lane = strip_->lane(l);
-    return lane.store().id[static_cast<std::size_t>(lane.first_fast_row())];
-  };
-  for (int l = 0; l < strip_->num_lanes(); ++l) {
-    const Lane<Dim>& lane = strip_->lane(l);
-    if (!lane.must_stop() || graph_->steps_done(l) != steps) continue;
-    if (pressed < 0 || lane.overload() > strip_->lane(pressed).overload()) pressed = l;
-    passage.add(lane.passage());
-    if (lane.is_fast() && (fast < 0 || id_in(l) < id_in(fast))) fast = l;
-  }
-  if (passage.exists()) report_passage(passage);
-  if (fast >= 0) report_fast(fast);
-  report_overload(pressed);
-}
-
-/// Chunks of about kChunkSeconds, by what the pairs have cost since the last rebuild. No bit
-/// depends on it.
-template <int Dim>
-void Simulation::EngineOf<Dim>::size_chunks() {
-  std::int64_t pairs = 0;
-  for (int l = 0; l < strip_->num_lanes(); ++l) pairs += strip_->lane(l).num_pairs();
-  const double seconds = graph_->times().chunks - chunk_seconds_;
-  const auto worked = static_cast<double>(pairs / strip_->num_lanes() * (step_ - chunks_sized_at_));
-  chunk_seconds_ += seconds;
-  chunks_sized_at_ = step_;
-  if (worked <= 0.0 || seconds <= 0.0) return;
-  strip_->chunk_pairs = std::clamp(static_cast<std::int64_t>(kChunkSeconds * worked / seconds),
-                                   kLeastChunk, kMostChunk);
+  return steps_until(schedule_.next_part(step_));
 }
 
 template <int Dim>
-void Simulation::EngineOf<Dim>::update_lists() {
-  const bool travelled = schedule_->must_rebuild(step_);
-  if (schedule_->take_stop_agreed()) {
-    stopped_ = true;
-    forget_stop_request();
-  }
-  if (schedule_->take_save_agreed()) {
-    must_save_ = true;
-    forget_checkpoint_request();
-  }
-  if (const auto answer = schedule_->take_answer()) {
-    judge(*answer);
-    if (answer->skin > 0.0) tuned_skin_ = answer->skin;
-    must_rebuild_ = must_rebuild_ || next_skin() != world_.skin;
-  }
-  if (must_remove_) remove_outside();
-  const bool is_test = options_.rebuild_every > 0 && step_ % options_.rebuild_every == 0;
-  if (!travelled && !must_rebuild_ && !is_test) return;
-  size_chunks();
-  const double begin = now();
-  const double walls_outran = outrun_share(wall_distance2(), world_.skin);
-  world_.skin = next_skin();
-  schedule_->set_skin(world_.skin);
-  if (step_ >= options_.loss.step && communicator_.rank() + 1 == communicator_.size())
-    strip_->lane(0).lose(std::exchange(options_.loss.what, Loss::Nothing));
-  strip_->rebuild([this](const std::function<void(int)>& body) { graph_->for_each_lane(body); });
-  strip_->lane(0).note_outrun(walls_outran);
-  for (std::size_t w = 0; w < world_.walls.size(); ++w)
-    walls_at_rebuild_[w] = world_.walls[w].point;
-  watch_growth();
-  schedule_->rebuilt(step_);
-  must_rebuild_ = false;
-  rebuild_seconds_ += now() - begin;
-  if (trace_)
-    trace_->slice(Trace::Slice::Rebuild, 0, static_cast<std::int64_t>(1e9 * begin), now_ns());
-}
-
-/// Where particles may soon pass each other in a step, lists have all that might.
-template <int Dim>
-double Simulation::EngineOf<Dim>::next_skin() const {
-  return 2.0 * schedule_->speed() * world_.dt > world_.quick_travel ? scale_.skin : tuned_skin_;
+Measures Simulation::EngineOf<Dim>::measure() {
+  const Measures m = barchan::measure(parts_);
+  watch_.see_overlap(m.max_overlap_share);
+  return m;
 }
 
 template <int Dim>
-bool Simulation::EngineOf<Dim>::is_last_stage() const {
-  return static_cast<std::size_t>(stage_) + 1 == model_.stages.size();
+Timings Simulation::EngineOf<Dim>::timings() const {
+  LoopSeconds loop = loop_;
+  loop.rebuilds = lists_.seconds();
+  loop.reductions = schedule_.wait_seconds() + plates_.wait_seconds();
+  return timings_of(parts_, graph_.times(), loop);
 }
 
 template <int Dim>
-void Simulation::EngineOf<Dim>::update_stage() {
-  if (step_ > 0 && !is_last_stage() && stage_is_over()) enter_stage(stage_ + 1);
-}
-
-/// The run ends with its last stage, between two steps; a restart from there comes to the same
-/// verdict.
-template <int Dim>
-bool Simulation::EngineOf<Dim>::last_stage_ends() {
-  if (is_over_ || step_ == 0 || !is_last_stage() || !stage_is_over()) return is_over_;
-  is_over_ = true;
-  if (communicator_.is_root())
-    note(fmt::format("the last stage, '{}', is over, and the run with it",
-                     model_.stages.back().name));
-  return true;
+CheckpointState Simulation::EngineOf<Dim>::state() {
+  CheckpointState s;
+  s.step = step_;
+  s.num_particles = population_.size;
+  s.left = population_.left;
+  s.look = schedule_.pending_look(step_);
+  stages_.save(s);
+  save_parts(parts_, s);
+  return s;
 }
 
 template <int Dim>
-bool Simulation::EngineOf<Dim>::stage_time_is_over(std::int64_t step) const {
-  const Stage& stage = model_.stages[static_cast<std::size_t>(stage_)];
-  return static_cast<double>(step - stage_begin_) * world_.dt >= stage.max_time - 0.5 * world_.dt;
-}
-
-/// Whether somebody must look, before that step, whether the stage is over.
-template <int Dim>
-bool Simulation::EngineOf<Dim>::stage_may_end(std::int64_t step) const {
-  if (stage_time_is_over(step)) return true;
-  const std::int64_t steps = step - stage_begin_;
-  return model_.stages[static_cast<std::size_t>(stage_)].kinetic_ratio > 0.0 && steps > 0 &&
-         steps % kStageCheck == 0;
-}
-
-template <int Dim>
-bool Simulation::EngineOf<Dim>::stage_is_over() {
-  if (!stage_may_end(step_)) return false;
-  if (stage_time_is_over(step_)) return true;
-  const Stage& stage = model_.stages[static_cast<std::size_t>(stage_)];
-  return taped_verdict(communicator_, [&] {
-    const Measures m = measure();
-    return m.kinetic.value() < stage.kinetic_ratio * m.elastic.value();
-  });
-}
-
-template <int Dim>
-void Simulation::EngineOf<Dim>::enter_stage(int stage) {
-  stage_ = stage;
-  stage_begin_ = step_;
-  for (std::size_t w = 0; w < world_.walls.size(); ++w) {
-    const bool active = world_.wall_specs[w].from_stage <= stage;
-    if (active == world_.walls[w].is_active) continue;
-    must_rebuild_ = true;  // walls come into the lists
-    world_.walls[w].is_active = active;
-    refuse_intruders(w);
-  }
-}
-
-/// Collective. A wall that appears where a particle is would throw it out.
-template <int Dim>
-void Simulation::EngineOf<Dim>::refuse_intruders(std::size_t wall) {
-  std::int64_t first = 0, count = 0;
-  std::string what;
-  for_each_owned([&](const OwnedParticle& p) {
-    ParticleData here;
-    here.id = p.id;
-    here.radius = p.radius;
-    here.position = p.position;
-    here.fixed = std::isinf(p.mass);
-    const WallFoot foot =
-        world_.wall_shapes[wall].foot(world_.walls[wall].point, p.position.data());
-    const auto found = intrusion(world_.wall_specs[wall], foot, here, Dim);
-    if (!found) return;
-    ++count;
-    if (first != 0 && first < p.id) return;
-    first = p.id;
-    what = *found;
-  });
-  communicator_.allreduce_sum(std::span(&count, 1));
-  if (count == 0) return;
-  constexpr double kNone = -std::numeric_limits<double>::infinity();
-  what = from_rank_with_most(first == 0 ? kNone : -static_cast<double>(first), what);
-  throw AgreedError(fmt::format(
-      "at step {} wall '{}' appears with stage '{}' where particles are: {}{}; let it appear "
-      "elsewhere or later, or take particles away from there",
-      step_, model_.walls[wall].name, model_.stages[static_cast<std::size_t>(stage_)].name, what,
-      count == 1 ? "" : fmt::format(", and {} more", count - 1)));
-}
-
-/// What particles press loaded plates with, on its way to all ranks while the step is computed.
-/// Contacts with plates are few, so one thread does all lanes.
-template <int Dim>
-void Simulation::EngineOf<Dim>::press_plates(const StepFrame& frame) {
-  plate_sums_.assign(world_.walls.size(), WallSums());
-  for (int l = 0; l < strip_->num_lanes(); ++l) strip_->lane(l).press_plates(frame, plate_sums_);
-  plates_->begin(plate_sums_);
-}
-
-/// All ranks know the work of a plate; the first one counts it.
-template <int Dim>
-void Simulation::EngineOf<Dim>::kick_plates() {
-  const int appears_in = step_ == stage_begin_ ? stage_ : -1;
-  plate_sums_.assign(world_.walls.size(), WallSums());
-  plates_->kick(world_.walls, appears_in,
-                communicator_.is_root() ? strip_->lane(0).wall_sums() : plate_sums_);
+void Simulation::EngineOf<Dim>::save_checkpoint() {
+  const std::int64_t begin = now_ns();
+  parts_.strip.complete_halo();  // whether pairs across cuts touch
+  CheckpointCopy& copy = keeper_->begin();
+  copy.step = step_;
+  copy.time = static_cast<double>(step_) * model_.time.step;
+  copy_lanes(parts_, graph_, lists_.wall_outrun(), copy);
+  copy.state.clear();
+  if (communicator_.is_root()) copy.state = encode(state());
+  keeper_->start();
+  if (is_in_step_) loop_.checkpoints += seconds_since(begin);
 }
 
 template class Simulation::EngineOf<2>;

@@ -26,9 +26,7 @@ bool is_recording(const RunOptions& options) {
 
 ExchangeOptions options_of(const RunOptions& options) {
   ExchangeOptions exchange;
-  exchange.max_delay_seconds = options.max_delay_seconds;
-  exchange.delay_seed = options.delay_seed;
-  exchange.ranks_per_node = options.ranks_per_node;
+  exchange.hooks = options.hooks;
   return exchange;
 }
 
@@ -41,8 +39,7 @@ template <int Dim>
 WorkPattern work_of(const Strip<Dim>& strip) {
   double seconds = 0.0;
   int chunks = 1;
-  for (int l = 0; l < strip.num_lanes(); ++l) {
-    const auto& lane = strip.lane(l);
+  for (const Lane<Dim>& lane : strip.lanes()) {
     seconds += kSecondsPerParticle * static_cast<double>(lane.store().num_owned) +
                kSecondsPerPair * static_cast<double>(lane.num_pairs());
     chunks = std::max(chunks, lane.num_chunks());
@@ -63,6 +60,10 @@ void check_exchange(const std::string& name, const Communicator& communicator) {
     throw InputError(std::string(e.what()),
                      "here work: auto, return, " + exchanges_here(communicator, neighbours));
   }
+}
+
+CutScheme cut_scheme(const RunOptions& options) {
+  return options.exchange == kReturn ? CutScheme::Returned : CutScheme::BothSides;
 }
 
 std::unique_ptr<Exchange> first_exchange(const RunOptions& options,

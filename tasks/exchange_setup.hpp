@@ -14,6 +14,9 @@ namespace barchan {
 /// those that work between these ranks and why the others do not.
 void check_exchange(const std::string& name, const Communicator& communicator);
 
+/// Of the exchange that the options name.
+[[nodiscard]] CutScheme cut_scheme(const RunOptions& options);
+
 /// The exchange that a run begins with: the one that the options name; for `auto` a two-sided one,
 /// which works everywhere, until the sizes of messages are known; for `replay` the tape. Null on
 /// one rank. Collective. Errors, the same on every rank: InputError for an unknown name (with the

@@ -23,8 +23,8 @@ void HaloWatch<Dim>::begin_run() {
 
 template <int Dim>
 bool HaloWatch<Dim>::may_poll(Side side) const {
-  return side == Side::Left || !strip_.scheme_returns() || !strip_.neighbours().has(Side::Left) ||
-         left_is_done_;
+  return side == Side::Left || strip_.scheme() == CutScheme::BothSides ||
+         !strip_.neighbours().has(Side::Left) || left_is_done_;
 }
 
 template <int Dim>

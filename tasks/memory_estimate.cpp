@@ -25,12 +25,7 @@ std::vector<char> bonded_ones(const ParticleSet& set) {
 /// One lane takes all slabs, and has its lists made.
 template <int Dim>
 std::size_t bytes_of_lane(const Model& model, const ParticleSet& set) {
-  const double skin = model.search.skin.value_or(default_skin(model, set));
-  World<Dim> world;
-  set_up(world, model,
-         {skin, search_reach(model, set, skin), static_cast<std::int64_t>(set.particles.size()),
-          !set.bonds.empty(), force_grain(model, set)},
-         vector_width("auto"));
+  World<Dim> world = make_world<Dim>(model, scale_of(model, set), vector_width("auto"));
   Lane<Dim> lane(world);
   const std::vector<double> lengths(set.bonds.size(), 0.0);  // take the same room
   lane.seed(0, world.grid.num_slabs(), set.particles, set.bonds, lengths, bonded_ones(set));

@@ -44,6 +44,17 @@ bool Plates::are_driven(std::span<const WallState> states) const {
                      [&](std::size_t w) { return states[w].is_active; });
 }
 
+bool Plates::stand_still(std::span<const WallState> states) const {
+  return !are_driven(states) && std::ranges::all_of(states, [](const WallState& wall) {
+    return !wall.is_active || wall.velocity == Vec3::Zero();
+  });
+}
+
+std::span<WallSums> Plates::start_sums() {
+  sums_.assign(specs_.size(), WallSums());
+  return sums_;
+}
+
 void Plates::begin(std::span<const WallSums> sums) {
   auto to = digits_.begin();
   for (const std::size_t w : loaded_) {
@@ -73,7 +84,8 @@ void Plates::kick(std::span<WallState> states, int appears_in, std::span<WallSum
     const std::size_t w = loaded_[p];
     if (!states[w].is_active) continue;
     const double h = specs_[w].from_stage == appears_in ? 0.5 * dt_ : dt_;
-    works[w].work.add(kick_plate(states[w], specs_[w], force_on(p), h));
+    const double work = kick_plate(states[w], specs_[w], force_on(p), h);
+    if (!works.empty()) works[w].work.add(work);
   }
 }
 

@@ -29,13 +29,18 @@ class Plates {
 
   /// Whether some loaded plate is there, so that steps need begin() and kick().
   [[nodiscard]] bool are_driven(std::span<const WallState> states) const;
+  /// Whether no wall moves, nor will.
+  [[nodiscard]] bool stand_still(std::span<const WallState> states) const;
+  /// For begin(): zeros, one a wall. Reuses memory.
+  [[nodiscard]] std::span<WallSums> start_sums();
   /// Before the rest of a step: forces of this rank's particles on the walls. Collective; waits for
   /// nobody.
   void begin(std::span<const WallSums> sums);
   /// After it, where plates are driven: loaded plates take up their forces. Waits for the sum.
   /// @param appears_in  the stage that begins with this step, or -1: plates that appear start with
   /// half a kick, as particles do
-  /// @param works  of each wall on the particles in this step; those of loaded plates are added [J]
+  /// @param works  of each wall on the particles in this step; those of loaded plates are added
+  /// [J]; empty: another rank counts them
   void kick(std::span<WallState> states, int appears_in, std::span<WallSums> works);
   /// After that all walls move.
   void move(std::span<WallState> states) const;
@@ -45,6 +50,7 @@ class Plates {
   [[nodiscard]] Vec3 force_on(std::size_t plate) const;
 
   std::vector<WallSpec> specs_;
+  std::vector<WallSums> sums_;
   std::vector<std::size_t> loaded_;
   double dt_;
   double wait_seconds_ = 0.0;

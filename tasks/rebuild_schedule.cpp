@@ -125,7 +125,7 @@ void RebuildSchedule::begin(std::int64_t step, double speed) {
   rebuilt(step);
 }
 
-RebuildSchedule::PendingLook RebuildSchedule::pending_look(std::int64_t step) {
+PendingLook RebuildSchedule::pending_look(std::int64_t step) {
   if (check_step_ >= step || !is_look(check_step_)) return {};
   reduction_.wait();
   const CheckNumbers answer = numbers();

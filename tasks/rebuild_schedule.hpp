@@ -6,7 +6,7 @@
 #include <utility>
 
 #include <barchan/comm/base/reduction.hpp>
-#include <barchan/core/brick/departure.hpp>
+#include <barchan/core/checkpoint/state.hpp>
 
 namespace barchan {
 
@@ -52,13 +52,6 @@ class RebuildSchedule {
   struct Wishes {
     bool stop = false, save = false;
   };
-  /// A look that is begun and not answered yet, the same on every rank; for checkpoints.
-  struct PendingLook {
-    std::int64_t step = -1;  ///< -1: there is none
-    std::int64_t outside = 0;
-    double overlap = 0.0;
-  };
-
   struct Foresight {
     CheckNumbers answer;
     std::int64_t next_check = 0;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include <barchan/comm/base/tape.hpp>
+#include <barchan/comm/slots/exchange.hpp>
 #include <barchan/core/brick/departure.hpp>
 #include <barchan/core/model/model.hpp>
 
@@ -17,10 +18,14 @@ enum class Schedule { Overlap, Sequential };
 /// else, for ranks with a spare core.
 enum class Progress { Poll, Thread };
 
-/// Tests: the last rank loses one of these in the first rebuild from `step` on.
-struct LossFault {
-  Loss what = Loss::Nothing;
-  std::int64_t step = 0;
+/// What only tests ask for: hardships that a run must bear, and a fault that it must notice.
+struct TestHooks : ExchangeHooks {  ///< tasks are delayed as messages are
+  struct LossFault {
+    Loss what = Loss::Nothing;  ///< the last rank loses one of these
+    std::int64_t step = 0;      ///< in the first rebuild from this step on
+  };
+  LossFault loss;
+  int rebuild_every = 0;  ///< also rebuild at multiples of it
 };
 
 /// How to carry out a run. No option changes a bit of the result.
@@ -35,11 +40,7 @@ struct RunOptions {
   bool trace = false;                  ///< record tasks and messages; see Simulation::write_trace
   std::size_t trace_events = 1 << 17;  ///< the latest events that each thread keeps
   std::shared_ptr<Tape> tape;          ///< records all messages; played by exchange "replay"
-  double max_delay_seconds = 0.0;      ///< tests: random delays in messages and tasks
-  std::uint64_t delay_seed = 0;
-  int ranks_per_node = 0;  ///< tests: this many ranks in a row count as a node; 0: the real nodes
-  LossFault loss;          ///< tests
-  int rebuild_every = 0;   ///< tests: also rebuild at multiples of it
+  TestHooks hooks;                     ///< for tests only
 };
 
 }  // namespace barchan

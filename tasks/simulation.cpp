@@ -68,11 +68,10 @@ Simulation::Simulation(std::unique_ptr<Engine> engine) : engine_(std::move(engin
 Simulation Simulation::restore(const Model& model, const std::string& checkpoint,
                                Communicator communicator, const RunOptions& options) {
   check_input(communicator, model, checkpoint, options);
+  const OpenCheckpoint open = open_checkpoint(communicator, checkpoint, model);
   if (model.dimension == 2)
-    return Simulation(
-        std::make_unique<EngineOf<2>>(model, checkpoint, std::move(communicator), options));
-  return Simulation(
-      std::make_unique<EngineOf<3>>(model, checkpoint, std::move(communicator), options));
+    return Simulation(std::make_unique<EngineOf<2>>(model, open, std::move(communicator), options));
+  return Simulation(std::make_unique<EngineOf<3>>(model, open, std::move(communicator), options));
 }
 
 Simulation::~Simulation() = default;
@@ -118,7 +117,7 @@ double Simulation::time() const {
   return static_cast<double>(engine().step_) * engine().model_.time.step;
 }
 int Simulation::stage() const {
-  return engine().stage_;
+  return engine().stages_.current();
 }
 const Model& Simulation::model() const {
   return engine().model_;
@@ -142,16 +141,16 @@ std::int64_t Simulation::num_owned() const {
   return engine().num_owned();
 }
 std::int64_t Simulation::num_particles() const {
-  return engine().num_particles_;
+  return engine().population_.size;
 }
 const LeftDomain& Simulation::left_domain() const {
-  return engine().left_;
+  return engine().population_.left;
 }
 void Simulation::on_departure(std::function<void(std::span<const Departure>)> tell) {
-  engine().tell_departures_ = std::move(tell);
+  engine().population_.tell_departures = std::move(tell);
 }
 std::vector<Note> Simulation::take_notes() {
-  return std::exchange(engine().notes_, {});
+  return engine().notes_.take();
 }
 void Simulation::apply_forces(const std::function<Vec3(const OwnedParticle&)>& force) {
   between_steps("apply_forces").apply_forces(force);

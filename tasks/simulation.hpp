@@ -15,6 +15,7 @@
 #include <barchan/core/brick/measures.hpp>
 #include <barchan/core/links/walls.hpp>
 #include <barchan/core/model/model.hpp>
+#include <barchan/tasks/notes.hpp>
 #include <barchan/tasks/run_options.hpp>
 
 namespace barchan {
@@ -47,18 +48,6 @@ struct Timings {
   ExchangeStats exchange;  ///< zero on one rank
 };
 
-/// An event of a run, for its log.
-struct Note {
-  std::string text;  ///< a line
-  bool is_warning = false;
-};
-
-/// Particles that left the domain since the start, and the contacts and bonds that they took along.
-struct LeftDomain {
-  std::int64_t particles = 0;
-  LinkCounts links;
-};
-
 /// A DEM simulation on all ranks of a communicator.
 ///
 ///     Simulation sim(model, particles, Communicator::world(), options);
@@ -70,7 +59,7 @@ struct LeftDomain {
 /// The state is the same to the bit for any number of ranks, threads and any exchange. The library
 /// works on a communicator of its own and prints nothing. It ends the program in one case, with a
 /// line on stderr: this rank cannot come back from a call of MPI, since another rank hangs
-/// (comm/base/call_watch.hpp).
+/// (comm/call_watch.hpp).
 /// Construction, run, measure, digest, destruction and members documented as collective are
 /// collective; the rest is local. One thread at a time.
 class Simulation {

@@ -21,7 +21,7 @@ GraphShape shape_of(const Strip<Dim>& strip, Schedule schedule) {
   }
   shape.neighbours = strip.neighbours();
   shape.is_sequential = schedule == Schedule::Sequential;
-  shape.returns = strip.scheme_returns();
+  shape.scheme = strip.scheme();
   return shape;
 }
 
@@ -33,8 +33,8 @@ StepGraph<Dim>::StepGraph(Strip<Dim>& strip, const RunOptions& options)
       clock_(strip.num_lanes()),
       shape_(shape_of(strip, options.schedule)),
       steps_(static_cast<std::size_t>(strip.num_lanes())),
-      max_task_delay_(options.max_delay_seconds),
-      delay_state_(options.delay_seed * 2 + 1),
+      max_task_delay_(options.hooks.max_delay_seconds),
+      delay_state_(options.hooks.delay_seed * 2 + 1),
       graph_(step_tasks(shape_), options.threads,
              [this](const StepTask& task, int parity) { do_task(task, parity); }),
       awaits_right_(graph_.list().find({Work::AwaitRight}) >= 0),

@@ -113,7 +113,7 @@ class Writer {
   const bool has_right_ = shape_.neighbours.has(Side::Right);
   const bool awaits_ = has_left_ || has_right_;
   const bool awaits_right_ =
-      has_left_ && has_right_ && (shape_.returns || (is_lone_ && !shape_.is_sequential));
+      has_left_ && has_right_ && (shape_.returns() || (is_lone_ && !shape_.is_sequential));
   const bool goes_on_ = !awaits_ && !is_lone_;
   StepTasks list_;
 };

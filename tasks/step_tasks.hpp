@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <barchan/comm/topology/neighbours.hpp>
+#include <barchan/tasks/cut_scheme.hpp>
 
 namespace barchan {
 
@@ -30,7 +31,7 @@ struct GraphShape {
   std::vector<LaneShape> lanes;
   Neighbours neighbours;
   bool is_sequential = false;
-  bool returns = false;  ///< the right neighbour answers what the left band makes known
+  CutScheme scheme = CutScheme::BothSides;
 
   [[nodiscard]] int num_lanes() const { return static_cast<int>(lanes.size()); }
   [[nodiscard]] bool has_band(int lane, Side side) const {
@@ -42,6 +43,8 @@ struct GraphShape {
   [[nodiscard]] bool is_remote(int lane, Side side) const {
     return lane == outer_lane(side) && neighbours.has(side);
   }
+  /// Whether the right neighbour answers what the left band makes known.
+  [[nodiscard]] bool returns() const { return scheme == CutScheme::Returned; }
   [[nodiscard]] Work last_work(int lane) const {
     if (has_band(lane, Side::Right)) return Work::RightBand;
     return has_band(lane, Side::Left) ? Work::LeftBand : Work::Chunks;

@@ -14,16 +14,15 @@
 namespace barchan {
 template <int Dim>
 Strip<Dim>::Strip(World<Dim>& world, const Communicator& communicator,
-                  std::unique_ptr<Exchange> exchange, int num_lanes, bool scheme_returns)
+                  std::unique_ptr<Exchange> exchange, int num_lanes, CutScheme scheme)
     : world_(world),
       communicator_(communicator),
       exchange_(std::move(exchange)),
-      sizes_(communicator, 1, 0),
       neighbours_(
           strip_neighbours(communicator.rank(), communicator.size(), world.grid.is_periodic(0))),
-      returns_(scheme_returns),
+      scheme_(scheme),
       posts_(static_cast<std::size_t>(num_lanes)) {
-  for (int l = 0; l < num_lanes; ++l) lanes_.push_back(std::make_unique<Lane<Dim>>(world));
+  for (int l = 0; l < num_lanes; ++l) lanes_.emplace_back(world);
   place_bands();
   if (!exchange_) return;
   const auto nodes = nodes_of_ranks(communicator);
@@ -36,10 +35,8 @@ Strip<Dim>::Strip(World<Dim>& world, const Communicator& communicator,
 
 template <int Dim>
 bool Strip<Dim>::has_neighbour(int l, Side side) const {
-  return is_outer(l, side)
-             ? neighbours_.has(side) ||
-                   (communicator_.size() == 1 && num_lanes() > 1 && world_.grid.is_periodic(0))
-             : true;
+  return !is_outer(l, side) || neighbours_.has(side) ||
+         (communicator_.size() == 1 && num_lanes() > 1 && world_.grid.is_periodic(0));
 }
 
 template <int Dim>
@@ -54,7 +51,7 @@ void Strip<Dim>::place_bands() {
     for (const Side side : kSides) {
       Band& band = lane(l).band(side);
       band.exists = has_neighbour(l, side);
-      band.returns = returns_ && is_remote(l, side);
+      band.returns = returns() && is_remote(l, side);
     }
   }
 }
@@ -111,7 +108,7 @@ template <int Dim>
 void Strip<Dim>::send_band(int l, Side side) {
   Lane<Dim>& mine = lane(l);
   if (is_remote(l, side)) {
-    if (returns_ && side == Side::Left) return;  // ghosts go right only
+    if (returns() && side == Side::Left) return;  // ghosts go right only
     return send_halo(side, mine.halo_bytes(side),
                      [&](std::span<std::byte> message) { mine.pack_halo(side, message); });
   }
@@ -153,9 +150,9 @@ void Strip<Dim>::complete_halo() {
     }
   }
   for (const Side side : kSides) {
-    if (!awaits(side) || (returns_ && side == Side::Right)) continue;
+    if (!awaits_ghosts(side)) continue;
     wait_halo(side);
-    lane(side == Side::Left ? 0 : num_lanes() - 1).unpack_halo(side, exchange_->received(side));
+    outer_lane(side).unpack_halo(side, exchange_->received(side));
     exchange_->release(side);
     awaited_[index_of(side)] = false;
   }
@@ -163,9 +160,50 @@ void Strip<Dim>::complete_halo() {
 }
 
 template <int Dim>
+std::int64_t Strip<Dim>::discard_halo() {
+  std::int64_t posted = 0;
+  for (const Side side : kSides) {
+    if (!awaits_ghosts(side)) continue;
+    wait_halo(side);
+    posted = std::max(posted, posted_at(side));
+    exchange_->release(side);
+  }
+  awaited_ = {};
+  return posted;
+}
+
+/// Steps must not allocate.
+template <int Dim>
+void Strip<Dim>::begin_lists() {
+  for (int l = 0; l < num_lanes(); ++l) {
+    for (const Side side : kSides) {
+      for (auto& boxes : post(l).halo) boxes[index_of(side)].reserve(lane(l).halo_bytes(side));
+    }
+  }
+  set_fresh();
+  awaited_ = {};
+  if (!returns()) return;
+  results_.reserve(most_results_bytes() / sizeof(double));
+  // In the published scheme results come back even where ghosts are fresh.
+  awaited_[index_of(Side::Right)] = neighbours_.has(Side::Right);
+}
+
+template <int Dim>
+std::size_t Strip<Dim>::most_results_bytes() const {
+  return std::max(lanes_.front().results_bytes(Side::Left),
+                  lanes_.back().results_bytes(Side::Right));
+}
+
+template <int Dim>
+std::size_t Strip<Dim>::most_halo_bytes() const {
+  return std::max({lanes_.front().halo_bytes(Side::Left), lanes_.back().halo_bytes(Side::Right),
+                   returns() ? most_results_bytes() : 0});
+}
+
+template <int Dim>
 std::int64_t Strip<Dim>::num_owned() const {
   std::int64_t n = 0;
-  for (const auto& lane : lanes_) n += lane->store().num_owned;
+  for (const Lane<Dim>& lane : lanes_) n += lane.store().num_owned;
   return n;
 }
 
@@ -174,8 +212,8 @@ std::pair<double, double> Strip<Dim>::extent() const {
   if (num_owned() == 0) return {0.0, 0.0};
   constexpr double kFar = std::numeric_limits<double>::infinity();
   std::pair<double, double> extent{kFar, -kFar};
-  for (const auto& lane : lanes_) {
-    const auto& store = lane->store();
+  for (const Lane<Dim>& lane : lanes_) {
+    const auto& store = lane.store();
     for (std::int32_t i = 0; i < store.num_owned; ++i) {
       const double at = world_.grid.along_strips(store.x(i));
       extent = {std::min(extent.first, at), std::max(extent.second, at)};
@@ -187,7 +225,7 @@ std::pair<double, double> Strip<Dim>::extent() const {
 template <int Dim>
 std::size_t Strip<Dim>::bytes() const {
   std::size_t n = 0;
-  for (const auto& lane : lanes_) n += lane->bytes();
+  for (const Lane<Dim>& lane : lanes_) n += lane.bytes();
   return n;
 }
 

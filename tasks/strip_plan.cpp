@@ -9,7 +9,6 @@
 #include <barchan/comm/topology/strips.hpp>
 #include <barchan/core/base/error.hpp>
 #include <barchan/core/generators/close_pairs.hpp>
-#include <barchan/core/search/grid.hpp>
 #include <barchan/tasks/forecast.hpp>
 
 namespace barchan {
@@ -43,10 +42,7 @@ StripPlan plan_for(const Model& model, const ParticleSet& set) {
   StripPlan plan;
   plan.axis = grid.axis(0);
   plan.slab_width = (model.domain.hi - model.domain.lo)[plan.axis] / grid.num_slabs();
-  plan.slab_counts.resize(static_cast<std::size_t>(grid.num_slabs()));
-  for (const ParticleData& p : set.particles) {
-    ++plan.slab_counts[static_cast<std::size_t>(grid.coordinate(p.position.data(), 0))];
-  }
+  plan.slab_counts = count_slabs(slabs_of(grid, set), grid.num_slabs());
   return plan;
 }
 
@@ -56,6 +52,27 @@ double search_reach(const Model& model, const ParticleSet& particles, double ski
   double largest = 0.0;
   for (const ParticleData& p : particles.particles) largest = std::max(largest, p.radius);
   return std::max(2.0 * largest, kBondStretch * longest_bond(model, particles)) + skin;
+}
+
+template <int Dim>
+std::vector<int> slabs_of(const Grid<Dim>& grid, const ParticleSet& set) {
+  std::vector<int> slabs;
+  slabs.reserve(set.particles.size());
+  for (const ParticleData& particle : set.particles) {
+    double x[3] = {particle.position[0], particle.position[1], particle.position[2]};
+    grid.wrap(x);
+    slabs.push_back(grid.coordinate(x, 0));
+  }
+  return slabs;
+}
+
+template std::vector<int> slabs_of(const Grid<2>&, const ParticleSet&);
+template std::vector<int> slabs_of(const Grid<3>&, const ParticleSet&);
+
+std::vector<std::int64_t> count_slabs(std::span<const int> slabs, int num_slabs) {
+  std::vector<std::int64_t> counts(static_cast<std::size_t>(num_slabs), 0);
+  for (const int slab : slabs) ++counts[static_cast<std::size_t>(slab)];
+  return counts;
 }
 
 int StripPlan::most_ranks() const {

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <barchan/core/model/model.hpp>
+#include <barchan/core/search/grid.hpp>
 
 namespace barchan {
 
@@ -13,6 +15,12 @@ inline constexpr int kMinSlabs = 2;
 /// Reach of the contact search [m]: two of the largest particles, or the longest bond with a tenth
 /// of stretch, and the skin.
 [[nodiscard]] double search_reach(const Model& model, const ParticleSet& particles, double skin);
+
+/// Of every particle the slab that it lies in.
+template <int Dim>
+[[nodiscard]] std::vector<int> slabs_of(const Grid<Dim>& grid, const ParticleSet& set);
+/// How many particles lie in each slab.
+[[nodiscard]] std::vector<std::int64_t> count_slabs(std::span<const int> slabs, int num_slabs);
 
 /// How the domain is cut along its strip axis.
 struct StripPlan {

@@ -1,5 +1,8 @@
+#include <barchan/tasks/strip_rebuild.hpp>
+
 #include <algorithm>
-#include <cmath>
+#include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -7,8 +10,8 @@
 #include <barchan/comm/base/tape.hpp>
 #include <barchan/comm/base/watchdog.hpp>
 #include <barchan/comm/topology/strips.hpp>
-#include <barchan/core/base/error.hpp>
-#include <barchan/tasks/strip.hpp>
+#include <barchan/tasks/strip_plan.hpp>
+#include <barchan/tasks/strip_seed.hpp>
 
 namespace barchan {
 namespace {
@@ -18,11 +21,48 @@ constexpr int kRecutEvery = 8;  // rebuilds between looks at the balance
 }  // namespace
 
 template <int Dim>
-void Strip<Dim>::rebuild(const ForEachLane& parallel) {
+StripRebuild<Dim>::StripRebuild(Strip<Dim>& strip)
+    : strip_(strip),
+      sizes_(strip.communicator(), 1, 0),
+      outboxes_(static_cast<std::size_t>(strip.num_lanes())) {}
+
+template <int Dim>
+void StripRebuild<Dim>::seed(const ParticleSet& set) {
+  const Grid<Dim>& grid = strip_.world().grid;
+  const std::vector<int> slabs = slabs_of(grid, set);
+  cuts_ = cut_equal(count_slabs(slabs, grid.num_slabs()), total_lanes(), kMinSlabs);
+  seed_lanes(strip_, set, slabs, std::span(cuts_).subspan(first_lane()));
+  begin_lists();
+}
+
+template <int Dim>
+void StripRebuild<Dim>::restore(std::vector<int> cuts, std::span<const CheckpointShare> shares) {
+  cuts_ = std::move(cuts);
+  for (std::size_t l = 0; l < shares.size(); ++l) {
+    const std::size_t place = first_lane() + l;
+    strip_.lanes()[l].restore(cuts_[place], cuts_[place + 1], shares[l]);
+  }
+  begin_lists();
+}
+
+template <int Dim>
+void StripRebuild<Dim>::begin_lists() {
+  for (Lane<Dim>& lane : strip_.lanes()) lane.order();
+  exchange_ghosts([this](const std::function<void(int)>& body) {
+    for (int l = 0; l < strip_.num_lanes(); ++l) body(l);
+  });
+  for (Lane<Dim>& lane : strip_.lanes()) {
+    lane.restart_search_seconds();  // setting up is not part of the loop
+    lane.forget_imbalance();
+  }
+}
+
+template <int Dim>
+void StripRebuild<Dim>::rebuild(const ForEachLane& parallel) {
   // A halo that is on its way is of no use any more. Where the exchange allows it, it is waited for
   // behind migration.
-  const bool sides_go_together = exchange_ && !exchange_->allows_uneven_sides();
-  if (sides_go_together) discard_pending();
+  const Exchange* exchange = strip_.exchange();
+  if (exchange != nullptr && !exchange->allows_uneven_sides()) discard_halo();
   ++num_rebuilds_;
   if (num_rebuilds_ % kRecutEvery == 0 && total_lanes() > 1) recut();
   migrate(parallel);
@@ -30,184 +70,142 @@ void Strip<Dim>::rebuild(const ForEachLane& parallel) {
 }
 
 template <int Dim>
-void Strip<Dim>::discard_pending() {
+void StripRebuild<Dim>::discard_halo() {
   const std::int64_t begin = now_ns();
-  std::int64_t posted = 0;
-  for (const Side side : kSides) {
-    if (!awaits(side) || (returns_ && side == Side::Right)) continue;
-    wait_halo(side);
-    posted = std::max(posted, posted_at(side));
-    exchange_->release(side);
-  }
-  awaited_ = {};
-  count_wait(waits_.halo, Trace::Slice::Wait, begin, posted);
+  count_wait(waits_.halo, Trace::Slice::Wait, begin, strip_.discard_halo());
 }
 
 template <int Dim>
-void Strip<Dim>::count_wait(double& seconds, Trace::Slice name, std::int64_t begin,
-                            std::int64_t posted) {
+void StripRebuild<Dim>::count_wait(double& seconds, Trace::Slice name, std::int64_t begin,
+                                   std::int64_t posted) {
   const std::int64_t end = now_ns();
   seconds += 1e-9 * static_cast<double>(end - begin);
   waits_.late +=
       1e-9 * static_cast<double>(std::clamp<std::int64_t>(posted - begin, 0, end - begin));
-  if (trace_ != nullptr) trace_->slice(name, 0, begin, end);
+  if (strip_.trace() != nullptr) strip_.trace()->slice(name, 0, begin, end);
 }
 
 template <int Dim>
-std::int64_t Strip<Dim>::bulk_posted_at() const {
-  std::int64_t last = 0;
-  for (const Side side : kSides) {
-    if (shares_clock_[index_of(side)]) last = std::max(last, exchange_->bulk_posted(side));
-  }
-  return last;
-}
-
-template <int Dim>
-void Strip<Dim>::recut() {
-  std::vector<std::int64_t> counts(static_cast<std::size_t>(world_.grid.num_slabs()), 0);
-  for (int l = 0; l < num_lanes(); ++l) {
-    const auto& store = lane(l).store();
-    for (std::int32_t i = 0; i < store.num_owned; ++i)
-      ++counts[static_cast<std::size_t>(world_.grid.coordinate(store.x(i), 0))];
+void StripRebuild<Dim>::recut() {
+  const Grid<Dim>& grid = strip_.world().grid;
+  std::vector<std::int64_t> counts(static_cast<std::size_t>(grid.num_slabs()), 0);
+  for (const Lane<Dim>& lane : strip_.lanes()) {
+    for (std::int32_t i = 0; i < lane.store().num_owned; ++i)
+      ++counts[static_cast<std::size_t>(grid.coordinate(lane.store().x(i), 0))];
   }
   const std::int64_t begin = now_ns();
-  taped_sum(communicator_, counts);
+  taped_sum(strip_.communicator(), counts);
   count_wait(waits_.migration, Trace::Slice::Reduction, begin, 0);
   cuts_ = barchan::recut(cuts_, counts, total_lanes(), kMinSlabs);
 }
 
 template <int Dim>
-void Strip<Dim>::migrate(const ForEachLane& parallel) {
+void StripRebuild<Dim>::migrate(const ForEachLane& parallel) {
   parallel([this](int l) {
-    const auto place = static_cast<std::size_t>(first_lane() + l);
-    auto& out = posts_[static_cast<std::size_t>(l)].out;
-    lane(l).begin_rebuild(cuts_[place], cuts_[place + 1], out[0], out[1]);
+    const std::size_t place = first_lane() + static_cast<std::size_t>(l);
+    strip_.lane(l).begin_rebuild(cuts_[place], cuts_[place + 1], outbox(l, Side::Left),
+                                 outbox(l, Side::Right));
   });
   begin_bulk();
-  if (neighbours_.has(Side::Left) || neighbours_.has(Side::Right)) {
-    for (int l = 0; l < num_lanes(); ++l) num_migrations_ += lane(l).num_leaving();
+  if (strip_.exchange() != nullptr) {
+    for (const Lane<Dim>& lane : strip_.lanes()) num_migrations_ += lane.num_leaving();
   }
   parallel([this](int l) {
     for (const Side side : kSides) {
-      if (has_neighbour(l, side) && !is_remote(l, side)) lane(l).absorb(bulk(l, side));
+      if (!strip_.is_remote(l, side)) strip_.lane(l).absorb(bulk(l, side));
     }
   });
-  if (exchange_) {
-    discard_pending();
-    const std::int64_t begin = now_ns();
-    wait_bulk("migration");
-    count_wait(waits_.migration, Trace::Slice::Migration, begin, bulk_posted_at());
-    if (neighbours_.has(Side::Left)) lane(0).absorb(exchange_->bulk(Side::Left));
-    if (neighbours_.has(Side::Right)) lane(num_lanes() - 1).absorb(exchange_->bulk(Side::Right));
+  if (strip_.exchange() != nullptr) {
+    discard_halo();
+    wait_bulk("migration", waits_.migration, Trace::Slice::Migration);
+    for (const Side side : kSides) {
+      if (strip_.neighbours().has(side))
+        strip_.outer_lane(side).absorb(strip_.exchange()->bulk(side));
+    }
   }
-  parallel([this](int l) { lane(l).order(); });
+  parallel([this](int l) { strip_.lane(l).order(); });
 }
 
 template <int Dim>
-void Strip<Dim>::begin_bulk() {
+void StripRebuild<Dim>::begin_bulk() {
   bulk_begin_ = now_ns();
-  if (!exchange_) return;
-  static const Bytes none;
-  const auto outgoing = [&](Side side) -> const Bytes& {
-    if (!neighbours_.has(side)) return none;
-    return (side == Side::Left ? posts_.front() : posts_.back()).out[index_of(side)];
+  if (strip_.exchange() == nullptr) return;
+  const auto outgoing = [&](Side side) -> std::span<const std::byte> {
+    if (!strip_.neighbours().has(side)) return {};
+    return outbox(side == Side::Left ? 0 : strip_.num_lanes() - 1, side);
   };
-  exchange_->begin_bulk(outgoing(Side::Left), outgoing(Side::Right));
+  strip_.exchange()->begin_bulk(outgoing(Side::Left), outgoing(Side::Right));
 }
 
 template <int Dim>
-std::span<const std::byte> Strip<Dim>::bulk(int l, Side side) const {
-  if (!has_neighbour(l, side)) return {};
-  if (is_remote(l, side)) return exchange_->bulk(side);
-  return posts_[static_cast<std::size_t>(lane_beside(l, side))].out[index_of(opposite(side))];
+std::span<const std::byte> StripRebuild<Dim>::bulk(int l, Side side) {
+  if (!strip_.has_neighbour(l, side)) return {};
+  if (strip_.is_remote(l, side)) return strip_.exchange()->bulk(side);
+  return outbox(strip_.lane_beside(l, side), opposite(side));
 }
 
 template <int Dim>
-void Strip<Dim>::exchange_ghosts(const ForEachLane& parallel) {
+void StripRebuild<Dim>::exchange_ghosts(const ForEachLane& parallel) {
   parallel([this](int l) {
     for (const Side side : kSides) {
-      auto& out = posts_[static_cast<std::size_t>(l)].out[index_of(side)];
-      out.clear();
-      if (has_neighbour(l, side)) lane(l).pack_ghosts(side, out);
+      outbox(l, side).clear();
+      if (strip_.has_neighbour(l, side)) strip_.lane(l).pack_ghosts(side, outbox(l, side));
     }
   });
   begin_bulk();
-  parallel([this](int l) { lane(l).list_owned(); });  // the messages travel meanwhile
-  if (exchange_ && !returns_) begin_sizes();
-  if (exchange_) {
-    const std::int64_t begin = now_ns();
-    wait_bulk("ghosts");
-    count_wait(waits_.ghosts, Trace::Slice::Ghosts, begin, bulk_posted_at());
-  }
+  parallel([this](int l) { strip_.lane(l).list_owned(); });  // the messages travel meanwhile
+  const bool is_alone = strip_.exchange() == nullptr;
+  const bool returns = strip_.scheme() == CutScheme::Returned;
+  if (!is_alone && !returns) begin_sizes();
+  if (!is_alone) wait_bulk("ghosts", waits_.ghosts, Trace::Slice::Ghosts);
   parallel([this](int l) {
-    lane(l).take_ghosts(bulk(l, Side::Left), bulk(l, Side::Right));
-    lane(l).restore_history();
-    lane(l).cut_chunks(chunk_pairs);
+    Lane<Dim>& lane = strip_.lane(l);
+    lane.take_ghosts(bulk(l, Side::Left), bulk(l, Side::Right));
+    lane.restore_history();
+    lane.cut_chunks(chunk_pairs);
   });
-  reserve_posts();
-  set_fresh();
-  awaited_ = {};
-  // In the published scheme results come back even where ghosts are fresh.
-  if (returns_) awaited_[index_of(Side::Right)] = neighbours_.has(Side::Right);
-  if (!exchange_) return;
-  if (returns_) begin_sizes();  // sizes of results follow from the lists
+  strip_.begin_lists();
+  if (is_alone) return;
+  if (returns) begin_sizes();  // sizes of results follow from the lists
   const std::int64_t begin = now_ns();
   sizes_.wait();
   count_wait(waits_.ghosts, Trace::Slice::Reduction, begin, 0);
-  exchange_->reserve(static_cast<std::size_t>(sizes_.maxima()[0]));
-}
-
-/// Steps must not allocate.
-template <int Dim>
-void Strip<Dim>::reserve_posts() {
-  for (int l = 0; l < num_lanes(); ++l) {
-    for (const Side side : kSides) {
-      const std::size_t bytes = lane(l).halo_bytes(side);
-      for (auto& boxes : posts_[static_cast<std::size_t>(l)].halo)
-        boxes[index_of(side)].reserve(bytes);
-    }
-  }
-  if (!returns_) return;
-  results_.reserve(std::max(lane(0).results_bytes(Side::Left),
-                            lane(num_lanes() - 1).results_bytes(Side::Right)) /
-                   sizeof(double));
+  strip_.exchange()->reserve(static_cast<std::size_t>(sizes_.maxima()[0]));
 }
 
 template <int Dim>
-void Strip<Dim>::begin_sizes() {
-  const double most = static_cast<double>(most_halo_bytes());
+void StripRebuild<Dim>::begin_sizes() {
+  const double most = static_cast<double>(strip_.most_halo_bytes());
   sizes_.begin(std::span(&most, 1), {});
 }
 
 template <int Dim>
-void Strip<Dim>::wait_bulk(const char* what) {
+void StripRebuild<Dim>::wait_bulk(const char* what, double& seconds, Trace::Slice name) {
+  const std::int64_t begin = now_ns();
   wait_until(
       [this] {
         if (sizes_.is_in_flight()) (void)sizes_.test();
-        return exchange_->poll_bulk();
+        return strip_.exchange()->poll_bulk();
       },
       [this, what] {
         std::string from;
         for (const Side side : kSides) {
-          if (!neighbours_.has(side)) continue;
+          if (!strip_.neighbours().has(side)) continue;
           from += fmt::format("{} rank {} ({})", from.empty() ? "from" : " or",
-                              neighbours_.rank(side), name_of(side));
+                              strip_.neighbours().rank(side), name_of(side));
         }
-        return fmt::format("rank {}: {} of step {} {}", communicator_.rank(), what, step, from);
+        return fmt::format("rank {}: {} of step {} {}", strip_.communicator().rank(), what,
+                           strip_.step, from);
       });
   waits_.in_flight += 1e-9 * static_cast<double>(now_ns() - bulk_begin_);
+  std::int64_t posted = 0;
+  for (const Side side : kSides) {
+    if (strip_.shares_clock(side)) posted = std::max(posted, strip_.exchange()->bulk_posted(side));
+  }
+  count_wait(seconds, name, begin, posted);
 }
 
-template <int Dim>
-std::size_t Strip<Dim>::most_halo_bytes() const {
-  const Lane<Dim>&first = lane(0), &last = lane(num_lanes() - 1);
-  std::size_t most = std::max(first.halo_bytes(Side::Left), last.halo_bytes(Side::Right));
-  if (returns_)
-    most = std::max({most, first.results_bytes(Side::Left), last.results_bytes(Side::Right)});
-  return most;
-}
-
-template class Strip<2>;
-template class Strip<3>;
+template class StripRebuild<2>;
+template class StripRebuild<3>;
 
 }  // namespace barchan

@@ -1,14 +1,10 @@
+#include <barchan/tasks/strip_seed.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <utility>
 #include <vector>
-
-#include <barchan/comm/topology/strips.hpp>
-#include <barchan/tasks/strip.hpp>
-
-// The strip of one rank at the start of a run. Every rank has all particles at hand and keeps its
-// own.
 
 namespace barchan {
 namespace {
@@ -39,49 +35,25 @@ BondGeometry bond_geometry(const PeriodicBox& box, const ParticleSet& set) {
   return geometry;
 }
 
-template <int Dim>
-std::vector<int> slabs_of(const Grid<Dim>& grid, const ParticleSet& set) {
-  std::vector<int> slabs;
-  slabs.reserve(set.particles.size());
-  for (const ParticleData& particle : set.particles) {
-    double x[3] = {particle.position[0], particle.position[1], particle.position[2]};
-    grid.wrap(x);
-    slabs.push_back(grid.coordinate(x, 0));
-  }
-  return slabs;
-}
-
 }  // namespace
 
 template <int Dim>
-void Strip<Dim>::seed(const ParticleSet& set) {
-  const std::vector<int> slabs = slabs_of(world_.grid, set);
-  std::vector<std::int64_t> counts(static_cast<std::size_t>(world_.grid.num_slabs()), 0);
-  for (const int slab : slabs) ++counts[static_cast<std::size_t>(slab)];
-  cuts_ = cut_equal(counts, total_lanes(), kMinSlabs);
-
-  const BondGeometry bonds = bond_geometry<Dim>(world_.grid.box(), set);
-  for (int l = 0; l < num_lanes(); ++l) {
-    const int begin = cuts_[static_cast<std::size_t>(first_lane() + l)],
-              end = cuts_[static_cast<std::size_t>(first_lane() + l + 1)];
+void seed_lanes(Strip<Dim>& strip, const ParticleSet& set, std::span<const int> slabs,
+                std::span<const int> cuts) {
+  const BondGeometry bonds = bond_geometry<Dim>(strip.world().grid.box(), set);
+  for (std::size_t l = 0; l < strip.lanes().size(); ++l) {
     std::vector<ParticleData> mine;
     std::vector<char> is_bonded;
     for (std::size_t p = 0; p < set.particles.size(); ++p) {
-      if (slabs[p] < begin || slabs[p] >= end) continue;
+      if (slabs[p] < cuts[l] || slabs[p] >= cuts[l + 1]) continue;
       mine.push_back(set.particles[p]);
       is_bonded.push_back(bonds.is_bonded[p]);
     }
-    lane(l).seed(begin, end, mine, set.bonds, bonds.lengths, is_bonded);
-    lane(l).order();
-  }
-  exchange_ghosts(one_by_one());
-  for (const auto& lane : lanes_) {
-    lane->restart_search_seconds();  // setting up is not part of the loop
-    lane->forget_imbalance();
+    strip.lanes()[l].seed(cuts[l], cuts[l + 1], mine, set.bonds, bonds.lengths, is_bonded);
   }
 }
 
-template void Strip<2>::seed(const ParticleSet&);
-template void Strip<3>::seed(const ParticleSet&);
+template void seed_lanes(Strip<2>&, const ParticleSet&, std::span<const int>, std::span<const int>);
+template void seed_lanes(Strip<3>&, const ParticleSet&, std::span<const int>, std::span<const int>);
 
 }  // namespace barchan

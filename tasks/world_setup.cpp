@@ -1,9 +1,20 @@
 #include <barchan/tasks/world_setup.hpp>
 
+#include <barchan/tasks/forecast.hpp>
+#include <barchan/tasks/strip_plan.hpp>
+
 namespace barchan {
 
+WorldScale scale_of(const Model& model, const ParticleSet& particles) {
+  const double skin = model.search.skin.value_or(default_skin(model, particles));
+  return {skin, search_reach(model, particles, skin),
+          static_cast<std::int64_t>(particles.particles.size()), !particles.bonds.empty(),
+          force_grain(model, particles)};
+}
+
 template <int Dim>
-void set_up(World<Dim>& world, const Model& model, const WorldScale& scale, VectorWidth width) {
+World<Dim> make_world(const Model& model, const WorldScale& scale, VectorWidth width) {
+  World<Dim> world;
   world.skin = scale.skin;
   world.dt = model.time.step;
   world.search = model.search.kind;
@@ -14,9 +25,10 @@ void set_up(World<Dim>& world, const Model& model, const WorldScale& scale, Vect
   world.kernels = make_kernels(Dim, width, world.laws, scale.has_bonds, world.grid.box());
   world.bond_laws = model.bond_laws;
   world.set_walls(model.walls);
+  return world;
 }
 
-template void set_up(World<2>&, const Model&, const WorldScale&, VectorWidth);
-template void set_up(World<3>&, const Model&, const WorldScale&, VectorWidth);
+template World<2> make_world(const Model&, const WorldScale&, VectorWidth);
+template World<3> make_world(const Model&, const WorldScale&, VectorWidth);
 
 }  // namespace barchan

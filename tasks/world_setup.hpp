@@ -16,11 +16,11 @@ struct WorldScale {
   ForceGrain grain;
 };
 
-/// Fills an empty world from a model. Pure but for the machine's vector widths.
-template <int Dim>
-void set_up(World<Dim>& world, const Model& model, const WorldScale& scale, VectorWidth width);
+/// Of the start of a run. Pure.
+[[nodiscard]] WorldScale scale_of(const Model& model, const ParticleSet& particles);
 
-extern template void set_up(World<2>&, const Model&, const WorldScale&, VectorWidth);
-extern template void set_up(World<3>&, const Model&, const WorldScale&, VectorWidth);
+/// Without particles. Pure but for the machine's vector widths.
+template <int Dim>
+[[nodiscard]] World<Dim> make_world(const Model& model, const WorldScale& scale, VectorWidth width);
 
 }  // namespace barchan

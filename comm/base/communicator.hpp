@@ -2,9 +2,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -72,6 +74,18 @@ class Communicator {
   /// Byte strings of any length, in rank order, on rank 0; empty elsewhere.
   [[nodiscard]] std::vector<std::vector<std::byte>> gather(std::span<const std::byte> mine) const;
   [[nodiscard]] std::vector<std::string> gather(const std::string& mine) const;
+  /// Plain data of all ranks, in rank order, on rank 0; empty elsewhere.
+  template <class T>
+  [[nodiscard]] std::vector<T> gather_all(std::span<const T> mine) const {
+    static_assert(std::is_trivially_copyable_v<T>);
+    std::vector<T> all;
+    for (const auto& piece : gather(std::as_bytes(mine))) {
+      const std::size_t known = all.size();
+      all.resize(known + piece.size() / sizeof(T));
+      if (!piece.empty()) std::memcpy(all.data() + known, piece.data(), piece.size());
+    }
+    return all;
+  }
 
   /// One verdict for all: when `error` is not empty on some rank, every rank gets the text of the
   /// lowest such rank; else empty. For work with files: waits for file_wait_limit().

@@ -64,10 +64,11 @@ std::unique_ptr<Exchange> make_exchange(std::string_view name, const Communicato
   std::unique_ptr<Exchange> exchange =
       parts ? std::make_unique<MixedExchange>(*parts, communicator, neighbours, options, make_plain)
             : make_plain(name, communicator, neighbours, options);
-  if (!(options.max_delay_seconds > 0.0)) return exchange;
+  if (!(options.hooks.max_delay_seconds > 0.0)) return exchange;
   const std::uint64_t seed =
-      options.delay_seed * 1000003U + static_cast<std::uint64_t>(communicator.rank());
-  return std::make_unique<DelayedExchange>(std::move(exchange), options.max_delay_seconds, seed);
+      options.hooks.delay_seed * 1000003U + static_cast<std::uint64_t>(communicator.rank());
+  return std::make_unique<DelayedExchange>(std::move(exchange), options.hooks.max_delay_seconds,
+                                           seed);
 }
 
 void check_exchange_name(std::string_view name) {

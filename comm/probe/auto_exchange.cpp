@@ -108,7 +108,7 @@ SelectedExchange select_exchange(const Communicator& communicator, Neighbours ne
   choice.is_measured = true;
   choice.bytes = bytes;
   choice.work = work;
-  const Links links = count_links(communicator, neighbours, options.ranks_per_node);
+  const Links links = count_links(communicator, neighbours, options.hooks.ranks_per_node);
   for (const std::string& name : auto_candidates(links)) {
     if (needs_window(name) && !choice.hint.empty()) {  // what one lacks, all lack
       choice.candidates.push_back({name, choice.hint});

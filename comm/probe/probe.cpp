@@ -18,7 +18,7 @@ void probe_sizes(const Communicator& communicator, Neighbours neighbours, const 
                  const ProbeOptions& options, ProbeReport& report) {
   ExchangeOptions first;
   first.halo_bytes = *std::ranges::max_element(options.sizes);
-  first.ranks_per_node = options.ranks_per_node;
+  first.hooks = options.hooks;
   const auto exchange = make_exchange(name, communicator, neighbours, first);
   for (const std::size_t bytes : options.sizes) {
     ExchangeProbe probe(communicator, neighbours, *exchange, bytes, options.budget_seconds);
@@ -74,7 +74,7 @@ ProbeReport probe_exchanges(const Communicator& communicator, const ProbeOptions
   report.mpi_library = mpi_library_version();
   report.thread_level = mpi_thread_level();
   report.window = window_component(communicator);
-  const Links links = count_links(communicator, neighbours, options.ranks_per_node);
+  const Links links = count_links(communicator, neighbours, options.hooks.ranks_per_node);
   report.num_links = links.all;
   report.num_on_node = links.on_node;
   const auto names = options.exchanges.empty() ? all_names(links) : options.exchanges;

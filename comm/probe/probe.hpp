@@ -97,7 +97,7 @@ struct ProbeOptions {
   std::vector<std::string> exchanges;
   std::vector<std::size_t> sizes = {64, 256, 1 << 10, 1 << 12, 1 << 14, 1 << 16, 1 << 18, 1 << 20};
   double budget_seconds = 0.05;  ///< for each of the five measurements of a row
-  int ranks_per_node = 0;  ///< tests: this many ranks in a row count as a node; 0: the real nodes
+  ExchangeHooks hooks;
 };
 
 /// Measures all exchanges between neighbouring ranks. Collective; the same on every rank.

@@ -120,15 +120,19 @@ class Exchange {
   [[nodiscard]] virtual bool allows_uneven_sides() const { return true; }
 };
 
+/// What only tests ask for: a run must come to the same bits in spite of it.
+struct ExchangeHooks {
+  double max_delay_seconds = 0.0;  ///< hides arrived messages and holds sends up to this long
+  std::uint64_t delay_seed = 0;
+  int ranks_per_node = 0;  ///< this many ranks in a row count as a node; 0: the real nodes
+};
+
 struct ExchangeOptions {
   std::size_t halo_bytes = 4096;  ///< first size of the halo slots, equal on every rank
   std::size_t bulk_bytes =
       256 *
       1024;  ///< first size of a bulk fragment, equal on every rank; longer bulks go in rounds
-  /// Tests: hide arrived messages and hold sends up to this long; 0 = never.
-  double max_delay_seconds = 0.0;
-  std::uint64_t delay_seed = 0;
-  int ranks_per_node = 0;  ///< tests: this many ranks in a row count as a node; 0: the real nodes
+  ExchangeHooks hooks;
 };
 
 }  // namespace barchan

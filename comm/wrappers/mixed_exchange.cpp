@@ -54,8 +54,9 @@ MixedExchange::MixedExchange(const ExchangeMix& mix, const Communicator& communi
                              Neighbours neighbours, const ExchangeOptions& options, Make make)
     : name_(mix.near + "+" + mix.far) {
   const Place place{nodes_of_ranks(communicator),
-                    nodes_of_ranks(communicator, options.ranks_per_node), communicator.rank()};
-  const Links links = count_links(communicator, neighbours, options.ranks_per_node);
+                    nodes_of_ranks(communicator, options.hooks.ranks_per_node),
+                    communicator.rank()};
+  const Links links = count_links(communicator, neighbours, options.hooks.ranks_per_node);
   const bool left_is_near = place.is_near(neighbours.left);
   const bool right_is_near = place.is_near(neighbours.right);
   if (links.on_node > 0) {

@@ -43,6 +43,19 @@ struct WorstOverlap {
 /// Contacts with history, contacts with walls that have one, and bonds; each counted on one lane.
 struct LinkCounts {
   std::int64_t contacts = 0, wall_contacts = 0, bonds = 0;
+  LinkCounts& operator+=(const LinkCounts& other) {
+    contacts += other.contacts;
+    wall_contacts += other.wall_contacts;
+    bonds += other.bonds;
+    return *this;
+  }
+  friend bool operator==(const LinkCounts&, const LinkCounts&) = default;
+};
+
+/// Particles that left the domain since the start, and the contacts and bonds that they took along.
+struct LeftDomain {
+  std::int64_t particles = 0;
+  LinkCounts links;
 };
 
 /// What a lane can be made to lose in its next rebuild, to show that it is noticed.

@@ -33,12 +33,8 @@ CheckpointState take_state(ByteReader& in) {
   s.start_particles = in.take<std::int64_t>();
   s.has_bonds = in.take<std::uint8_t>() != 0;
   s.num_particles = in.take<std::int64_t>();
-  s.look_step = in.take<std::int64_t>();
-  s.look_outside = in.take<std::int64_t>();
-  s.look_overlap = in.take<double>();
-  for (std::int64_t* count :
-       {&s.left_particles, &s.left_contacts, &s.left_wall_contacts, &s.left_bonds})
-    *count = in.take<std::int64_t>();
+  s.look = in.take<PendingLook>();
+  s.left = in.take<LeftDomain>();
   s.walls = in.take_counted<SavedWall>();
   s.fingerprint = in.take_counted<std::uint64_t>();
   in.finish();
@@ -102,12 +98,8 @@ std::vector<std::byte> encode(const CheckpointState& s) {
   out.put(s.start_particles);
   out.put(static_cast<std::uint8_t>(s.has_bonds));
   out.put(s.num_particles);
-  out.put(s.look_step);
-  out.put(s.look_outside);
-  out.put(s.look_overlap);
-  for (const std::int64_t count :
-       {s.left_particles, s.left_contacts, s.left_wall_contacts, s.left_bonds})
-    out.put(count);
+  out.put(s.look);
+  out.put(s.left);
   out.put_counted(s.walls);
   out.put_counted(s.fingerprint);
   return bytes;
@@ -126,8 +118,8 @@ CheckpointState decode_state(std::span<const std::byte> bytes, const std::string
       state.step >= 0 && state.stage >= 0 && state.stage_begin >= 0 &&
       state.stage_begin <= state.step && state.skin >= 0.0 && std::isfinite(state.skin) &&
       positive(state.reach) && state.start_particles >= 0 && positive(state.grain) &&
-      state.overlap_limit > 0.0 && state.look_step >= -1 && state.look_step <= state.step &&
-      (state.look_step < 0 || state.step - state.look_step < kEventSteps);
+      state.overlap_limit > 0.0 && state.look.step >= -1 && state.look.step <= state.step &&
+      (state.look.step < 0 || state.step - state.look.step < kEventSteps);
   if (!is_sane) refuse(file, "the state is not valid", "take another checkpoint");
   return state;
 }

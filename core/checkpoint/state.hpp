@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <barchan/core/brick/departure.hpp>
 #include <barchan/core/model/model.hpp>
 
 namespace barchan {
@@ -16,6 +17,13 @@ struct SavedWall {
   double point[3], velocity[3];
   double force[3], torque[3], work;  ///< as last measured
   double is_active;
+};
+
+/// A look at the whole domain that is begun and not answered yet, the same on every rank.
+struct PendingLook {
+  std::int64_t step = -1;    ///< -1: there is none
+  std::int64_t outside = 0;  ///< id of a particle
+  double overlap = 0.0;      ///< share of the smaller radius
 };
 
 /// What a checkpoint keeps beside particles, contacts and bonds; the same on all ranks.
@@ -31,14 +39,8 @@ struct CheckpointState {
   bool has_bonds = false;
   std::int64_t num_particles = 0;  ///< now
 
-  // A look at the whole domain that is still to be answered.
-  std::int64_t look_step = -1;    ///< -1: there is none
-  std::int64_t look_outside = 0;  ///< id of a particle
-  double look_overlap = 0.0;      ///< share of the smaller radius
-
-  // What left the domain since the start, and the links that went with it.
-  std::int64_t left_particles = 0, left_contacts = 0, left_wall_contacts = 0, left_bonds = 0;
-
+  PendingLook look;
+  LeftDomain left;
   std::vector<SavedWall> walls;
   std::vector<std::uint64_t> fingerprint;  ///< of the model, see below
 };

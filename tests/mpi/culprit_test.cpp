@@ -150,7 +150,7 @@ TEST(Culprit, OneThatGoesWildInALaneThatIsBehindIsNamedInThatStep) {
     for (const std::int64_t id : {3, 40}) {
       const auto error = [&](int threads) -> std::string {
         RunOptions options = with_threads(threads);
-        options.max_delay_seconds = threads == 1 ? 0.0 : 1e-4;
+        options.hooks.max_delay_seconds = threads == 1 ? 0.0 : 1e-4;
         Simulation sim(s.model, s.set, MPI_COMM_SELF, options);
         sim.run(100);
         push(sim, id, force);

@@ -59,7 +59,7 @@ class ExchangeOfEveryKind : public testing::TestWithParam<Case> {
       : neighbours_(strip_neighbours(comm_.rank(), comm_.size(), GetParam().is_periodic)) {}
 
   std::unique_ptr<Exchange> make(ExchangeOptions options = {}) {
-    options.ranks_per_node = GetParam().ranks_per_node;
+    options.hooks.ranks_per_node = GetParam().ranks_per_node;
     return make_exchange(GetParam().exchange, comm_, neighbours_, options);
   }
 
@@ -174,8 +174,7 @@ TEST_P(ExchangeOfEveryKind, MovesBulksOfMegabytes) {
 }
 
 TEST_P(ExchangeOfEveryKind, KeepsTheBytesBehindRandomDelays) {
-  const auto exchange =
-      make({.halo_bytes = 3000, .bulk_bytes = 500, .max_delay_seconds = 4e-4, .delay_seed = 7});
+  const auto exchange = make({3000, 500, {.max_delay_seconds = 4e-4, .delay_seed = 7}});
 
   for (int round = 0; round < 15; ++round) {
     run_steps(*exchange, 10 * round, 10 * round + 10, 3000);
@@ -271,7 +270,7 @@ TEST(Exchange, MixesUseEachKindWhereItsNeighboursAre) {
   const auto comm = Communicator::world();
   const auto neighbours = strip_neighbours(comm.rank(), comm.size(), false);
   ExchangeOptions options;
-  options.ranks_per_node = 2;
+  options.hooks.ranks_per_node = 2;
 
   const auto exchange = make_exchange("shared+isend", comm, neighbours, options);
 

@@ -164,7 +164,7 @@ TEST(Outside, IsAnErrorThatNamesTheParticleUnlessTheModelSaysOtherwise) {
 void expect_loss_told(const Scenario& s, int threads, Loss what, std::int64_t step,
                       const char* told) {
   RunOptions options = with_threads(threads);
-  options.loss = {what, step};
+  options.hooks.loss = {what, step};
   expect_on_all_ranks(error_of(s, options), {told});
 }
 

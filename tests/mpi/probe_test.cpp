@@ -46,7 +46,7 @@ TEST_F(Probe, MeasuresMixesWhereLinksAreOfBothKinds) {
   ProbeOptions options;
   options.sizes = {64};
   options.budget_seconds = 0.001;
-  options.ranks_per_node = 2;
+  options.hooks.ranks_per_node = 2;
   if (comm_.size() < 3) return;  // one link
 
   const ProbeReport report = probe_exchanges(comm_, options);

@@ -136,7 +136,7 @@ TEST(StepTimes, AgreeWithWhatARunWithoutCommunicationSaves) {
   RunOptions options;
   options.threads = 1;
   options.exchange = "isend";
-  options.max_delay_seconds = 8e-3;
+  options.hooks.max_delay_seconds = 8e-3;
   options.tape = std::make_shared<Tape>();
   const auto timings_of_run = [&options] {
     Simulation sim(falling(false), lattice(), MPI_COMM_WORLD, options);

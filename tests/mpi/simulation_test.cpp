@@ -102,21 +102,22 @@ std::vector<RunOptions> variants(unsigned turn) {
     o.schedule = q % 2 == 0 ? Schedule::Overlap : Schedule::Sequential;
     o.search = (q / 2) % 2 == 0 ? ContactSearchKind::Cells : ContactSearchKind::AllPairs;
     o.vector = name_of(widths[(q + turn / 2) % widths.size()]);
-    o.max_delay_seconds = (q / 3) % 2 == 0 ? 1e-4 : 0.0;
-    o.delay_seed = 17 * q + 1;
+    o.hooks.max_delay_seconds = (q / 3) % 2 == 0 ? 1e-4 : 0.0;
+    o.hooks.delay_seed = 17 * q + 1;
     o.progress = q % 4 == 1 ? Progress::Thread : Progress::Poll;
-    o.ranks_per_node = 2;
+    o.hooks.ranks_per_node = 2;
     all.push_back(o);
   }
   return all;
 }
 
 std::string describe(const RunOptions& o) {
-  return fmt::format(
-      "{} ranks, exchange {}, {} threads, {}{}, {}, {}, delays up to {} s", num_ranks(), o.exchange,
-      o.threads, o.schedule == Schedule::Overlap ? "overlap" : "sequential",
-      o.progress == Progress::Thread ? " by a thread" : "",
-      o.search == ContactSearchKind::Cells ? "cells" : "all-pairs", o.vector, o.max_delay_seconds);
+  return fmt::format("{} ranks, exchange {}, {} threads, {}{}, {}, {}, delays up to {} s",
+                     num_ranks(), o.exchange, o.threads,
+                     o.schedule == Schedule::Overlap ? "overlap" : "sequential",
+                     o.progress == Progress::Thread ? " by a thread" : "",
+                     o.search == ContactSearchKind::Cells ? "cells" : "all-pairs", o.vector,
+                     o.hooks.max_delay_seconds);
 }
 
 /// The same particles in another order, with lists of another reach, which are made anew at other
@@ -127,7 +128,7 @@ void expect_same_bits_with_any_lists(const Scenario& s, const Outcome& reference
   const auto options = variants(turn);
   for (unsigned q = 0; q < 2; ++q) {
     RunOptions o = options[(turn + 3 * q) % options.size()];
-    o.rebuild_every = kEvery[(turn + q) % kEvery.size()];
+    o.hooks.rebuild_every = kEvery[(turn + q) % kEvery.size()];
     Scenario other = s;
     const double skin = s.model.search.skin.value_or(default_skin(s.model, s.set));
     other.model.search.skin = kFactors[(turn / 2 + 2 * q) % kFactors.size()] * skin;
@@ -135,7 +136,7 @@ void expect_same_bits_with_any_lists(const Scenario& s, const Outcome& reference
     const Outcome got = outcome_of(other, MPI_COMM_WORLD, o, 2);
     EXPECT_EQ(got.words, reference.words)
         << s.name << ": " << describe(o) << ", skin " << *other.model.search.skin << " for " << skin
-        << ", lists anew every " << o.rebuild_every << " steps, shuffled";
+        << ", lists anew every " << o.hooks.rebuild_every << " steps, shuffled";
   }
 }
 

@@ -41,7 +41,7 @@ void expect_all_bands(const std::string& exchange, bool is_periodic) {
   options.threads = 3;
 
   for (const double delay : {0.0, 2e-5}) {
-    options.max_delay_seconds = delay;
+    options.hooks.max_delay_seconds = delay;
     EXPECT_EQ(digest_after(s, MPI_COMM_WORLD, options), alone) << exchange << ", delay " << delay;
   }
 }

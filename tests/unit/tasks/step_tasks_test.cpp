@@ -18,7 +18,7 @@ std::vector<GraphShape> all_shapes() {
         GraphShape shape;
         shape.neighbours = beside;
         shape.is_sequential = (way & 1) != 0;
-        shape.returns = (way & 2) != 0;
+        shape.scheme = (way & 2) != 0 ? CutScheme::Returned : CutScheme::BothSides;
         for (int l = 0; l < num_lanes; ++l)
           shape.lanes.push_back(
               {1, l > 0 || beside.has(Side::Left), l + 1 < num_lanes || beside.has(Side::Right)});
@@ -32,7 +32,7 @@ std::vector<GraphShape> all_shapes() {
 std::string words(const GraphShape& shape) {
   return std::to_string(shape.num_lanes()) + " lanes, neighbours " +
          std::to_string(shape.neighbours.left) + " and " + std::to_string(shape.neighbours.right) +
-         (shape.is_sequential ? ", sequential" : "") + (shape.returns ? ", returns" : "");
+         (shape.is_sequential ? ", sequential" : "") + (shape.returns() ? ", returns" : "");
 }
 
 /// Tasks of three steps and what the list's edges say of them, directly or not.
@@ -141,7 +141,7 @@ TEST(StepTasks, AwaitHalosBehindAllChunksOrBeforeThem) {
 
 TEST(StepTasks, AwaitTheAnswerOfTheRightNeighbourBehindTheLeftBand) {
   for (const GraphShape& shape : all_shapes()) {
-    if (!shape.returns || shape.neighbours.left < 0 || shape.neighbours.right < 0) continue;
+    if (!shape.returns() || shape.neighbours.left < 0 || shape.neighbours.right < 0) continue;
     const Orders orders(step_tasks(shape));
 
     EXPECT_TRUE(orders.precedes({Work::LeftBand, 0}, 0, {Work::AwaitRight}, 0)) << words(shape);

@@ -71,8 +71,8 @@ CheckpointState some_state() {
   s.reach = 0.13;
   s.start_particles = s.num_particles = 40;
   s.grain = 0x1p-40;
-  s.look_step = 496;
-  s.look_outside = 7;
+  s.look.step = 496;
+  s.look.outside = 7;
   s.walls.resize(2);
   s.walls[1].point[1] = 0.75;
   s.fingerprint = {1, 2, 3};
@@ -156,7 +156,7 @@ TEST(Checkpoint, BringsBackTheState) {
   const CheckpointState state = decode_state(encode(expected), "file");
 
   EXPECT_EQ(encode(state), encode(expected));
-  EXPECT_EQ(state.look_outside, 7);
+  EXPECT_EQ(state.look.outside, 7);
   EXPECT_EQ(state.walls[1].point[1], 0.75);
 }
 

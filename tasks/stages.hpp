@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+
+#include <barchan/core/checkpoint/state.hpp>
+#include <barchan/core/model/model.hpp>
+
+namespace barchan {
+
+/// Which stage a run is in, since when, and when it may be over.
+class Stages {
+ public:
+  /// @param model  lives longer
+  explicit Stages(const Model& model) : model_(model) {}
+
+  [[nodiscard]] int current() const { return current_; }
+  [[nodiscard]] const Stage& spec() const {
+    return model_.stages[static_cast<std::size_t>(current_)];
+  }
+  [[nodiscard]] bool is_last() const {
+    return static_cast<std::size_t>(current_) + 1 == model_.stages.size();
+  }
+  [[nodiscard]] bool begins_at(std::int64_t step) const { return step == begin_; }
+  [[nodiscard]] bool time_is_over(std::int64_t step) const;
+  /// Whether somebody must look, before that step, whether the stage is over.
+  [[nodiscard]] bool may_end(std::int64_t step) const;
+  void enter_next(std::int64_t step) {
+    ++current_;
+    begin_ = step;
+  }
+
+  void save(CheckpointState& state) const;
+  void restore(const CheckpointState& state);
+
+ private:
+  const Model& model_;
+  int current_ = 0;
+  std::int64_t begin_ = 0;  ///< step
+};
+
+}  // namespace barchan

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include <barchan/comm/base/reduction.hpp>
+#include <barchan/core/particles/share.hpp>
+#include <barchan/tasks/strip.hpp>
+
+namespace barchan {
+
+/// Seconds that a rank waited in its rebuilds with nothing else to do, since the lists were first
+/// built.
+struct RebuildWaits {
+  double halo = 0.0;       ///< for a halo that the rebuild made useless
+  double migration = 0.0;  ///< for migrants, and for counts when cuts move
+  double ghosts = 0.0;     ///< for ghosts, and for the size of halos to come
+  double in_flight = 0.0;  ///< migrants and ghosts, from the send until they were in
+  double late = 0.0;       ///< of all: until a neighbour on this node had sent
+  [[nodiscard]] double sum() const { return halo + migration + ghosts; }
+};
+
+/// Makes the lists of a strip, first and anew: which particles are its own, where cuts lie, and
+/// what passes between lanes and ranks for it.
+///
+///     migrants ─► order by cells ─► ghosts ─► lists, history
+///
+/// Lanes of a rank find in each other's outboxes what ranks send each other.
+template <int Dim>
+class StripRebuild {
+ public:
+  /// Runs a function for every lane, on as many threads as there are.
+  using ForEachLane = std::function<void(const std::function<void(int)>&)>;
+
+  /// @param strip  lives longer
+  explicit StripRebuild(Strip<Dim>& strip);
+
+  /// Cuts the domain for equal counts, keeps this rank's share, and builds all lists. Collective.
+  void seed(const ParticleSet& set);
+  /// Instead of seed: the state of a checkpoint, between steps. Collective.
+  /// @param shares  one for each lane of this rank: particles between its cuts, and all that has an
+  /// end among them
+  void restore(std::vector<int> cuts, std::span<const CheckpointShare> shares);
+  /// Collective; leaves ghosts up to date.
+  void rebuild(const ForEachLane& parallel);
+
+  [[nodiscard]] const RebuildWaits& waits() const { return waits_; }
+  void restart_waits() { waits_ = {}; }  ///< setting up is not part of the loop
+  [[nodiscard]] std::int64_t num_rebuilds() const { return num_rebuilds_; }
+  /// Particles that left this rank.
+  [[nodiscard]] std::int64_t num_migrations() const { return num_migrations_; }
+  std::int64_t chunk_pairs = 1 << 14;  ///< pairs per chunk from the next rebuild on
+
+ private:
+  using Bytes = std::vector<std::byte>;
+
+  void discard_halo();
+  void recut();
+  void migrate(const ForEachLane& parallel);
+  void exchange_ghosts(const ForEachLane& parallel);
+  /// Before there are threads.
+  void begin_lists();
+  [[nodiscard]] Bytes& outbox(int l, Side side) {
+    return outboxes_[static_cast<std::size_t>(l)][index_of(side)];
+  }
+  /// Sends the outermost outboxes. bulk() gives what came, from a rank or a lane; empty: none came.
+  void begin_bulk();
+  [[nodiscard]] std::span<const std::byte> bulk(int l, Side side);
+  void wait_bulk(const char* what, double& seconds, Trace::Slice name);
+  void begin_sizes();
+  /// Since `begin`, for what a neighbour sent at `posted`; 0: not known
+  void count_wait(double& seconds, Trace::Slice name, std::int64_t begin, std::int64_t posted);
+  [[nodiscard]] std::size_t first_lane() const {
+    return static_cast<std::size_t>(strip_.communicator().rank() * strip_.num_lanes());
+  }
+  [[nodiscard]] int total_lanes() const {
+    return strip_.communicator().size() * strip_.num_lanes();
+  }
+
+  Strip<Dim>& strip_;
+  Reduction sizes_;                             ///< of halos to come
+  std::vector<std::array<Bytes, 2>> outboxes_;  ///< by lane and side
+  std::vector<int> cuts_;                       ///< of all lanes
+  RebuildWaits waits_;
+  std::int64_t bulk_begin_ = 0;
+  std::int64_t num_rebuilds_ = 0, num_migrations_ = 0;
+};
+
+extern template class StripRebuild<2>;
+extern template class StripRebuild<3>;
+
+}  // namespace barchan

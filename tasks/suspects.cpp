@@ -1,0 +1,109 @@
+#include <barchan/tasks/suspects.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <barchan/core/base/vec_text.hpp>
+
+namespace barchan {
+namespace {
+
+constexpr std::size_t kMostPartners = 6;  // that a message names
+
+/// Every rank looks among its own particles, so that where the cuts are is not in the text.
+template <int Dim>
+typename Lane<Dim>::Partners partners_of(const RunParts<Dim>& run, const Suspect& s) {
+  std::vector<std::int64_t> mine;
+  for (const Lane<Dim>& lane : run.strip.lanes()) lane.find_touching(s, mine);
+  typename Lane<Dim>::Partners found;
+  found.ids = run.communicator.gather_all(std::span<const std::int64_t>(mine));
+  std::sort(found.ids.begin(), found.ids.end());
+  for (std::size_t w = 0; w < run.world.walls.size(); ++w) {
+    const WallState& wall = run.world.walls[w];
+    if (wall.is_active && run.world.wall_shapes[w].foot(wall.point, s.position).distance < s.radius)
+      found.walls.push_back(static_cast<std::int32_t>(w));
+  }
+  return found;
+}
+
+}  // namespace
+
+std::string name_of_wall(const Model& model, std::int32_t wall) {
+  return "wall '" + model.walls[static_cast<std::size_t>(wall)].name + "'";
+}
+
+template <int Dim>
+std::string describe(const Model& model, const Suspect& s,
+                     const typename Lane<Dim>::Partners& touched) {
+  const std::string text = fmt::format("particle {} at {} with velocity {}", s.id,
+                                       in_brackets(s.position, Dim), in_brackets(s.velocity, Dim));
+  std::vector<std::string> names;
+  for (const std::int64_t id : touched.ids) names.push_back(fmt::format("particle {}", id));
+  for (const std::int32_t w : touched.walls) names.push_back(name_of_wall(model, w));
+  if (names.empty()) return text + ", touching nothing";
+  const std::size_t more = names.size() - std::min(names.size(), kMostPartners);
+  names.resize(names.size() - more);
+  return fmt::format("{}, touching {}{}", text, fmt::join(names, ", "),
+                     more == 0 ? "" : fmt::format(" and {} more", more));
+}
+
+template <int Dim>
+std::string describe_fastest(RunParts<Dim>& run) {
+  Suspect fastest;
+  const auto take = [&fastest](const Suspect& s) {
+    if (s.speed2 > fastest.speed2) fastest = s;
+  };
+  for (const Lane<Dim>& lane : run.strip.lanes()) {
+    const std::int32_t row = lane.fastest_row();
+    if (row >= 0) take(lane.suspect(row));
+  }
+  for (const Suspect& s : run.communicator.gather_all(std::span<const Suspect>(&fastest, 1)))
+    take(s);
+  run.communicator.bcast(std::as_writable_bytes(std::span(&fastest, 1)));
+  if (fastest.id == 0) return "no particle is left";
+  return "the fastest is " +
+         run.communicator.bcast(describe<Dim>(run.model, fastest, partners_of(run, fastest)));
+}
+
+template <int Dim>
+std::string describe_worst_overlap(RunParts<Dim>& run) {
+  run.strip.complete_halo();
+  WorstOverlap worst;
+  const auto take = [&worst](const WorstOverlap& other) {
+    if (other.is_worse_than(worst)) worst = other;
+  };
+  for (Lane<Dim>& lane : run.strip.lanes()) take(lane.worst_overlap());
+  for (const auto& of_rank : run.communicator.gather_all(std::span<const WorstOverlap>(&worst, 1)))
+    take(of_rank);
+  return run.communicator.bcast(fmt::format(
+      "now it is largest between particle {} at {} and {}: {:.3g} m, {:.3g} of the smaller radius",
+      worst.id, in_brackets(worst.position, Dim),
+      worst.wall >= 0 ? name_of_wall(run.model, worst.wall)
+                      : fmt::format("particle {}", worst.with),
+      worst.overlap, worst.share));
+}
+
+/// A skin wider than particles would not mend what goes wild.
+std::string remedy_for_travel(double travel, double reach) {
+  if (2.1 * travel > reach)
+    return "a run from step 0 with a smaller time.step, more damping or less overlap would help";
+  return fmt::format(
+      "search.skin = {:.2g} or more allows for it, also from a checkpoint before; so does a "
+      "smaller time.step, from step 0 on",
+      2.1 * travel);
+}
+
+template std::string describe<2>(const Model&, const Suspect&, const Lane<2>::Partners&);
+template std::string describe<3>(const Model&, const Suspect&, const Lane<3>::Partners&);
+template std::string describe_fastest(RunParts<2>&);
+template std::string describe_fastest(RunParts<3>&);
+template std::string describe_worst_overlap(RunParts<2>&);
+template std::string describe_worst_overlap(RunParts<3>&);
+
+}  // namespace barchan
