@@ -67,7 +67,7 @@ class Simulation::Engine {
 
 /// The time loop: what comes between two steps, and who does it. One step itself is StepGraph.
 ///
-///     checkpoint due? ─► stage over? ─► answers of the last check ─► lists ─► next check ─► step(s)
+///     checkpoint due? ─► stage over? ─► answer of the last check ─► lists ─► next check ─► steps
 template <int Dim>
 class Simulation::EngineOf final : public Simulation::Engine {
  public:

@@ -59,7 +59,7 @@ struct Timings {
 /// The state is the same to the bit for any number of ranks, threads and any exchange. The library
 /// works on a communicator of its own and prints nothing. It ends the program in one case, with a
 /// line on stderr: this rank cannot come back from a call of MPI, since another rank hangs
-/// (comm/call_watch.hpp).
+/// (comm/base/call_watch.hpp).
 /// Construction, run, measure, digest, destruction and members documented as collective are
 /// collective; the rest is local. One thread at a time.
 class Simulation {

@@ -118,7 +118,7 @@ class ExchangeOfEveryKind : public testing::TestWithParam<Case> {
 };
 
 TEST_P(ExchangeOfEveryKind, BringsEveryHaloToTheRightPlaceInTheRightStep) {
-  const auto exchange = make({.halo_bytes = 10000});
+  const auto exchange = make({.halo_bytes = 10000, .hooks = {}});
 
   run_steps(*exchange, 0, 400, 10000);
 
@@ -131,7 +131,7 @@ TEST_P(ExchangeOfEveryKind, BringsEveryHaloToTheRightPlaceInTheRightStep) {
 }
 
 TEST_P(ExchangeOfEveryKind, GrowsInMidRunAndLosesNothing) {
-  const auto exchange = make({.halo_bytes = 64, .bulk_bytes = 64});
+  const auto exchange = make({64, 64, {}});
   std::size_t room = 64;
 
   for (int growth = 0; growth < 6; ++growth) {
@@ -146,7 +146,7 @@ TEST_P(ExchangeOfEveryKind, GrowsInMidRunAndLosesNothing) {
 }
 
 TEST_P(ExchangeOfEveryKind, ReservingNoMoreThanThereIsChangesNothing) {
-  const auto exchange = make({.halo_bytes = 1000});
+  const auto exchange = make({.halo_bytes = 1000, .hooks = {}});
 
   exchange->reserve(500);
   exchange->reserve(1000);
@@ -155,7 +155,7 @@ TEST_P(ExchangeOfEveryKind, ReservingNoMoreThanThereIsChangesNothing) {
 }
 
 TEST_P(ExchangeOfEveryKind, MovesBulksOfAnyLengthThroughSmallSlots) {
-  const auto exchange = make({.halo_bytes = 256, .bulk_bytes = 1000});
+  const auto exchange = make({256, 1000, {}});
 
   for (int step = 0; step < 60; ++step) {
     run_bulk(*exchange, step, step % 10 == 0 ? 0 : 5000);
@@ -166,7 +166,7 @@ TEST_P(ExchangeOfEveryKind, MovesBulksOfAnyLengthThroughSmallSlots) {
 }
 
 TEST_P(ExchangeOfEveryKind, MovesBulksOfMegabytes) {
-  const auto exchange = make({.halo_bytes = 256, .bulk_bytes = 100000});
+  const auto exchange = make({256, 100000, {}});
 
   for (int step = 0; step < 4; ++step) run_bulk(*exchange, step, 3000000);
 
@@ -186,7 +186,7 @@ TEST_P(ExchangeOfEveryKind, KeepsTheBytesBehindRandomDelays) {
 
 // The `return` scheme: a band goes right, and only the neighbour's answer to it goes left.
 TEST_P(ExchangeOfEveryKind, AnswersWithinTheStepWhereSidesMayBeUneven) {
-  const auto exchange = make({.halo_bytes = 2000});
+  const auto exchange = make({.halo_bytes = 2000, .hooks = {}});
   const bool is_even = std::string(GetParam().exchange) == "fence";
   EXPECT_EQ(exchange->allows_uneven_sides(), !is_even);
   if (is_even) return;
