@@ -129,7 +129,7 @@ std::int64_t Simulation::EngineOf<Dim>::go_on(std::int64_t most) {
   if (drives_plates) {
     // Contacts with plates are few, so one thread does all lanes.
     const std::span<WallSums> sums = plates_.start_sums();
-    for (Lane<Dim>& lane : parts_.strip.lanes()) lane.press_plates(frame, sums);
+    for (Lane<Dim>& lane : parts_.strip.lanes()) lane.step.press_plates(frame, sums);
     plates_.begin(sums);
   }
   graph_.run(frame, steps);
@@ -140,7 +140,7 @@ std::int64_t Simulation::EngineOf<Dim>::go_on(std::int64_t most) {
   if (drives_plates) {
     // All ranks know the work of a plate; the first one counts it.
     plates_.kick(parts_.world.walls, stages_.begins_at(step_) ? stages_.current() : -1,
-                 communicator_.is_root() ? std::span(parts_.strip.lane(0).wall_sums())
+                 communicator_.is_root() ? std::span(parts_.strip.lane(0).brick.wall_sums)
                                          : std::span<WallSums>());
   }
   plates_.move(parts_.world.walls);

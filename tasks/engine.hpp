@@ -88,7 +88,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
     barchan::apply_forces(parts_.strip, force);
   }
   void clear_forces() override {
-    for (Lane<Dim>& lane : parts_.strip.lanes()) lane.store().external.clear();
+    for (Lane<Dim>& lane : parts_.strip.lanes()) lane.brick.store.external.clear();
   }
   Measures measure() override;
   std::uint64_t digest() override { return barchan::digest(parts_.strip); }

@@ -40,9 +40,9 @@ WorkPattern work_of(const Strip<Dim>& strip) {
   double seconds = 0.0;
   int chunks = 1;
   for (const Lane<Dim>& lane : strip.lanes()) {
-    seconds += kSecondsPerParticle * static_cast<double>(lane.store().num_owned) +
-               kSecondsPerPair * static_cast<double>(lane.num_pairs());
-    chunks = std::max(chunks, lane.num_chunks());
+    seconds += kSecondsPerParticle * static_cast<double>(lane.brick.store.num_owned) +
+               kSecondsPerPair * static_cast<double>(lane.brick.num_pairs());
+    chunks = std::max(chunks, lane.brick.num_chunks());
   }
   return {std::min(seconds / strip.num_lanes(), kLongestWork), chunks};
 }

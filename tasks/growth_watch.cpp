@@ -21,9 +21,9 @@ void GrowthWatch::look(RunParts<Dim>& run, std::int64_t step, Notes& notes) {
         return fmt::format("rank {}, lane {}: {}", run.communicator.rank(), l, what);
       };
     };
-    std::size_t candidates = lane.pairs().i.capacity();
-    for (const Side side : kSides) candidates += lane.band(side).across.i.capacity();
-    tell(lane.store().id.capacity(), true, named("rows of particles and ghosts"));
+    std::size_t candidates = lane.brick.pairs.i.capacity();
+    for (const Side side : kSides) candidates += lane.brick.band(side).across.i.capacity();
+    tell(lane.brick.store.id.capacity(), true, named("rows of particles and ghosts"));
     tell(candidates, true, named("candidate pairs"));
   }
   if (run.strip.exchange() == nullptr) return;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <barchan/comm/base/clock.hpp>
+#include <barchan/core/brick/measure.hpp>
 
 namespace barchan {
 namespace {
@@ -43,7 +44,7 @@ template <int Dim>
 Travel ListsKeeper<Dim>::travel() const {
   Travel most;
   for (const Lane<Dim>& lane : run_.strip.lanes()) {
-    const Travel t = lane.travel();
+    const Travel t = barchan::travel(lane.brick);
     take_larger(most.distance2, t.distance2);
     take_larger(most.speed2, t.speed2);
   }
@@ -100,7 +101,7 @@ double ListsKeeper<Dim>::next_skin() const {
 template <int Dim>
 void ListsKeeper<Dim>::size_chunks(std::int64_t step) {
   std::int64_t pairs = 0;
-  for (const Lane<Dim>& lane : run_.strip.lanes()) pairs += lane.num_pairs();
+  for (const Lane<Dim>& lane : run_.strip.lanes()) pairs += lane.brick.num_pairs();
   const double seconds = graph_.times().chunks - chunk_seconds_;
   const auto worked =
       static_cast<double>(pairs / run_.strip.num_lanes() * (step - chunks_sized_at_));
@@ -119,10 +120,11 @@ void ListsKeeper<Dim>::renew(std::int64_t step) {
   run_.world.skin = next_skin();
   schedule_.set_skin(run_.world.skin);
   if (step >= hooks_.loss.step && run_.communicator.rank() + 1 == run_.communicator.size())
-    run_.strip.lane(0).lose(std::exchange(hooks_.loss.what, Loss::Nothing));
+    run_.strip.lane(0).rebuild.carry().lose(std::exchange(hooks_.loss.what, Loss::Nothing));
   run_.rebuild.rebuild(
       [this](const std::function<void(int)>& body) { graph_.for_each_lane(body); });
-  run_.strip.lane(0).note_outrun(outrun);
+  double& told = run_.strip.lane(0).brick.outrun;
+  told = std::max(told, outrun);
   note_walls();
   schedule_.rebuilt(step);
   is_demanded_ = false;

@@ -28,12 +28,12 @@ std::size_t bytes_of_lane(const Model& model, const ParticleSet& set) {
   World<Dim> world = make_world<Dim>(model, scale_of(model, set), vector_width("auto"));
   Lane<Dim> lane(world);
   const std::vector<double> lengths(set.bonds.size(), 0.0);  // take the same room
-  lane.seed(0, world.grid.num_slabs(), set.particles, set.bonds, lengths, bonded_ones(set));
-  lane.order();
-  lane.list_owned();
-  lane.take_ghosts({}, {});
-  lane.restore_history();
-  lane.cut_chunks(kChunkPairs);
+  lane.rebuild.seed(0, world.grid.num_slabs(), set.particles, set.bonds, lengths, bonded_ones(set));
+  lane.rebuild.order();
+  lane.lists.list_owned();
+  lane.rebuild.take_ghosts({}, {});
+  lane.rebuild.restore_history();
+  lane.lists.cut_chunks(kChunkPairs);
   return lane.bytes();
 }
 

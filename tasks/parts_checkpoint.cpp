@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <barchan/core/base/error.hpp>
+#include <barchan/core/brick/checkpoint.hpp>
 
 namespace barchan {
 namespace {
@@ -38,10 +39,10 @@ WallState restored(const SavedWall& s) {
 /// Sums over all lanes, which may as well be the first one's.
 template <int Dim>
 void restore_totals(Lane<Dim>& first, std::span<const std::int64_t> totals) {
-  first.bonds().set_num_broken(totals[0]);
-  first.wall_sums().resize(first.world().walls.size());
+  first.brick.bonds.set_num_broken(totals[0]);
+  first.brick.wall_sums.resize(first.brick.world->walls.size());
   auto digit = totals.begin() + 1;
-  for (WallSums& sums : first.wall_sums()) {
+  for (WallSums& sums : first.brick.wall_sums) {
     std::copy_n(digit, ExactSum::kDigits, sums.work.digits().begin());
     digit += ExactSum::kDigits;
   }
@@ -53,7 +54,7 @@ std::int64_t check_restored(RunParts<Dim>& run, const OpenCheckpoint& checkpoint
   std::int64_t found[4] = {};
   for (Lane<Dim>& lane : run.strip.lanes()) {
     CheckpointShare share;
-    lane.save(share);
+    barchan::save(lane.brick, share);
     found[0] += static_cast<std::int64_t>(share.ids.size());
     found[1] += static_cast<std::int64_t>(share.contact_ids.size() / 2);
     found[2] += static_cast<std::int64_t>(share.wall_contact_ids.size());
@@ -79,8 +80,9 @@ void copy_lanes(RunParts<Dim>& run, StepGraph<Dim>& graph, double wall_outrun,
                 CheckpointCopy& copy) {
   std::tie(copy.lo, copy.hi) = run.strip.extent();
   copy.shares.resize(run.strip.lanes().size());
-  graph.for_each_lane(
-      [&](int l) { run.strip.lane(l).save(copy.shares[static_cast<std::size_t>(l)]); });
+  graph.for_each_lane([&](int l) {
+    barchan::save(run.strip.lane(l).brick, copy.shares[static_cast<std::size_t>(l)]);
+  });
   copy.shares[0].outruns.push_back(wall_outrun);
 }
 

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include <barchan/comm/base/clock.hpp>
+#include <barchan/core/brick/diagnose.hpp>
 
 namespace barchan {
 namespace {
@@ -16,8 +17,8 @@ GraphShape shape_of(const Strip<Dim>& strip, Schedule schedule) {
   GraphShape shape;
   for (int l = 0; l < strip.num_lanes(); ++l) {
     const Lane<Dim>& lane = strip.lane(l);
-    shape.lanes.push_back(
-        {lane.num_chunks(), lane.band(Side::Left).exists, lane.band(Side::Right).exists});
+    shape.lanes.push_back({lane.brick.num_chunks(), lane.brick.band(Side::Left).exists,
+                           lane.brick.band(Side::Right).exists});
   }
   shape.neighbours = strip.neighbours();
   shape.is_sequential = schedule == Schedule::Sequential;
@@ -50,7 +51,7 @@ template <int Dim>
 GraphShape StepGraph<Dim>::shape() const {
   GraphShape shape = shape_;
   for (int l = 0; l < shape.num_lanes(); ++l)
-    shape.lanes[static_cast<std::size_t>(l)].num_chunks = strip_.lane(l).num_chunks();
+    shape.lanes[static_cast<std::size_t>(l)].num_chunks = strip_.lane(l).brick.num_chunks();
   return shape;
 }
 
@@ -109,12 +110,12 @@ void StepGraph<Dim>::run_chunks(int l) {
   Lane<Dim>& lane = strip_.lane(l);
   StepFrame frame = frame_;
   frame.step += steps_done(l);
-  const int num_chunks = lane.num_chunks();
+  const int num_chunks = lane.brick.num_chunks();
   for (int c = 0; c < num_chunks; ++c) {
     const std::int64_t begin = now_ns();
     maybe_delay();
-    if (c == 0) lane.begin_step(frame);
-    lane.run_chunk(c);
+    if (c == 0) lane.step.begin(frame);
+    lane.step.run_chunk(c);
     const std::int64_t end = now_ns();
     clock_.chunk(l, steps_done(l), begin, end);
     watch_.after_chunk(l, c + 1 == num_chunks, end);
@@ -150,7 +151,7 @@ template <int Dim>
 void StepGraph<Dim>::end_step(int l, int parity) {
   strip_.end_step(l);
   const bool goes_on = ++steps_[static_cast<std::size_t>(l)] < num_steps_;
-  if (goes_on && !strip_.lane(l).must_stop())
+  if (goes_on && !must_stop(strip_.lane(l).brick))
     graph_.put(chunks_[static_cast<std::size_t>(l)], 1 - parity);
 }
 
@@ -160,7 +161,7 @@ void StepGraph<Dim>::require_all_steps() const {
   bool all_done = true, is_stopped = false;
   for (int l = 0; l < strip_.num_lanes(); ++l) {
     all_done = all_done && steps_done(l) == num_steps_;
-    is_stopped = is_stopped || strip_.lane(l).must_stop();
+    is_stopped = is_stopped || must_stop(strip_.lane(l).brick);
   }
   if (!all_done && !is_stopped) throw std::logic_error("step graph: a lane did not end its steps");
 }

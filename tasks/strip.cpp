@@ -10,6 +10,7 @@
 #include <barchan/comm/base/watchdog.hpp>
 #include <barchan/comm/topology/links.hpp>
 #include <barchan/core/base/error.hpp>
+#include <barchan/core/brick/halo.hpp>
 
 namespace barchan {
 template <int Dim>
@@ -49,7 +50,7 @@ template <int Dim>
 void Strip<Dim>::place_bands() {
   for (int l = 0; l < num_lanes(); ++l) {
     for (const Side side : kSides) {
-      Band& band = lane(l).band(side);
+      Band& band = lane(l).brick.band(side);
       band.exists = has_neighbour(l, side);
       band.returns = returns() && is_remote(l, side);
     }
@@ -59,25 +60,25 @@ void Strip<Dim>::place_bands() {
 template <int Dim>
 void Strip<Dim>::finish_band(int l, Side side) {
   Lane<Dim>& mine = lane(l);
-  const Band& band = mine.band(side);
+  const Band& band = mine.brick.band(side);
   if (!is_remote(l, side)) {
-    if (!post(l).is_fresh) mine.unpack_halo(side, inbox(l, side));
-    return mine.finish_band(side);
+    if (!post(l).is_fresh) unpack_halo(mine.brick, side, inbox(l, side));
+    return mine.step.finish_band(side);
   }
   if (band.returns && side == Side::Right) {
     const auto message = exchange_->received(side);
     results_.resize(message.size() / sizeof(double));
     std::memcpy(results_.data(), message.data(), results_.size() * sizeof(double));
     exchange_->release(side);
-    return mine.finish_right_band(results_);
+    return mine.step.finish_right_band(results_);
   }
   if (awaits(side)) {
-    mine.unpack_halo(side, exchange_->received(side));
+    unpack_halo(mine.brick, side, exchange_->received(side));
     exchange_->release(side);
   }
-  mine.finish_band(side);
+  mine.step.finish_band(side);
   if (!band.returns) return;
-  mine.results(results_);
+  take_results(mine.brick, results_);
   send_halo(side, results_.size() * sizeof(double), [&](std::span<std::byte> message) {
     std::memcpy(message.data(), results_.data(), message.size());
   });
@@ -109,12 +110,12 @@ void Strip<Dim>::send_band(int l, Side side) {
   Lane<Dim>& mine = lane(l);
   if (is_remote(l, side)) {
     if (returns() && side == Side::Left) return;  // ghosts go right only
-    return send_halo(side, mine.halo_bytes(side),
-                     [&](std::span<std::byte> message) { mine.pack_halo(side, message); });
+    return send_halo(side, halo_bytes(mine.brick, side),
+                     [&](std::span<std::byte> message) { pack_halo(mine.brick, side, message); });
   }
   auto& outbox = post(l).halo[static_cast<std::size_t>(1 - post(l).parity)][index_of(side)];
-  outbox.resize(mine.halo_bytes(side));
-  mine.pack_halo(side, outbox);
+  outbox.resize(halo_bytes(mine.brick, side));
+  pack_halo(mine.brick, side, outbox);
 }
 
 template <int Dim>
@@ -146,13 +147,14 @@ void Strip<Dim>::complete_halo() {
   if (post(0).is_fresh) return;
   for (int l = 0; l < num_lanes(); ++l) {
     for (const Side side : kSides) {
-      if (has_neighbour(l, side) && !is_remote(l, side)) lane(l).unpack_halo(side, inbox(l, side));
+      if (has_neighbour(l, side) && !is_remote(l, side))
+        unpack_halo(lane(l).brick, side, inbox(l, side));
     }
   }
   for (const Side side : kSides) {
     if (!awaits_ghosts(side)) continue;
     wait_halo(side);
-    outer_lane(side).unpack_halo(side, exchange_->received(side));
+    unpack_halo(outer_lane(side).brick, side, exchange_->received(side));
     exchange_->release(side);
     awaited_[index_of(side)] = false;
   }
@@ -177,7 +179,8 @@ template <int Dim>
 void Strip<Dim>::begin_lists() {
   for (int l = 0; l < num_lanes(); ++l) {
     for (const Side side : kSides) {
-      for (auto& boxes : post(l).halo) boxes[index_of(side)].reserve(lane(l).halo_bytes(side));
+      for (auto& boxes : post(l).halo)
+        boxes[index_of(side)].reserve(halo_bytes(lane(l).brick, side));
     }
   }
   set_fresh();
@@ -190,20 +193,21 @@ void Strip<Dim>::begin_lists() {
 
 template <int Dim>
 std::size_t Strip<Dim>::most_results_bytes() const {
-  return std::max(lanes_.front().results_bytes(Side::Left),
-                  lanes_.back().results_bytes(Side::Right));
+  return std::max(results_bytes(lanes_.front().brick, Side::Left),
+                  results_bytes(lanes_.back().brick, Side::Right));
 }
 
 template <int Dim>
 std::size_t Strip<Dim>::most_halo_bytes() const {
-  return std::max({lanes_.front().halo_bytes(Side::Left), lanes_.back().halo_bytes(Side::Right),
+  return std::max({halo_bytes(lanes_.front().brick, Side::Left),
+                   halo_bytes(lanes_.back().brick, Side::Right),
                    returns() ? most_results_bytes() : 0});
 }
 
 template <int Dim>
 std::int64_t Strip<Dim>::num_owned() const {
   std::int64_t n = 0;
-  for (const Lane<Dim>& lane : lanes_) n += lane.store().num_owned;
+  for (const Lane<Dim>& lane : lanes_) n += lane.brick.store.num_owned;
   return n;
 }
 
@@ -213,7 +217,7 @@ std::pair<double, double> Strip<Dim>::extent() const {
   constexpr double kFar = std::numeric_limits<double>::infinity();
   std::pair<double, double> extent{kFar, -kFar};
   for (const Lane<Dim>& lane : lanes_) {
-    const auto& store = lane.store();
+    const auto& store = lane.brick.store;
     for (std::int32_t i = 0; i < store.num_owned; ++i) {
       const double at = world_.grid.along_strips(store.x(i));
       extent = {std::min(extent.first, at), std::max(extent.second, at)};

@@ -10,6 +10,7 @@
 #include <barchan/comm/base/tape.hpp>
 #include <barchan/comm/base/watchdog.hpp>
 #include <barchan/comm/topology/strips.hpp>
+#include <barchan/core/brick/checkpoint.hpp>
 #include <barchan/tasks/strip_plan.hpp>
 #include <barchan/tasks/strip_seed.hpp>
 
@@ -40,20 +41,21 @@ void StripRebuild<Dim>::restore(std::vector<int> cuts, std::span<const Checkpoin
   cuts_ = std::move(cuts);
   for (std::size_t l = 0; l < shares.size(); ++l) {
     const std::size_t place = first_lane() + l;
-    strip_.lanes()[l].restore(cuts_[place], cuts_[place + 1], shares[l]);
+    Lane<Dim>& lane = strip_.lanes()[l];
+    barchan::restore(lane.brick, lane.rebuild, cuts_[place], cuts_[place + 1], shares[l]);
   }
   begin_lists();
 }
 
 template <int Dim>
 void StripRebuild<Dim>::begin_lists() {
-  for (Lane<Dim>& lane : strip_.lanes()) lane.order();
+  for (Lane<Dim>& lane : strip_.lanes()) lane.rebuild.order();
   exchange_ghosts([this](const std::function<void(int)>& body) {
     for (int l = 0; l < strip_.num_lanes(); ++l) body(l);
   });
   for (Lane<Dim>& lane : strip_.lanes()) {
-    lane.restart_search_seconds();  // setting up is not part of the loop
-    lane.forget_imbalance();
+    lane.lists.restart_seconds();  // setting up is not part of the loop
+    lane.rebuild.carry().imbalance() = {};
   }
 }
 
@@ -90,8 +92,8 @@ void StripRebuild<Dim>::recut() {
   const Grid<Dim>& grid = strip_.world().grid;
   std::vector<std::int64_t> counts(static_cast<std::size_t>(grid.num_slabs()), 0);
   for (const Lane<Dim>& lane : strip_.lanes()) {
-    for (std::int32_t i = 0; i < lane.store().num_owned; ++i)
-      ++counts[static_cast<std::size_t>(grid.coordinate(lane.store().x(i), 0))];
+    for (std::int32_t i = 0; i < lane.brick.store.num_owned; ++i)
+      ++counts[static_cast<std::size_t>(grid.coordinate(lane.brick.store.x(i), 0))];
   }
   const std::int64_t begin = now_ns();
   taped_sum(strip_.communicator(), counts);
@@ -103,16 +105,16 @@ template <int Dim>
 void StripRebuild<Dim>::migrate(const ForEachLane& parallel) {
   parallel([this](int l) {
     const std::size_t place = first_lane() + static_cast<std::size_t>(l);
-    strip_.lane(l).begin_rebuild(cuts_[place], cuts_[place + 1], outbox(l, Side::Left),
+    strip_.lane(l).rebuild.begin(cuts_[place], cuts_[place + 1], outbox(l, Side::Left),
                                  outbox(l, Side::Right));
   });
   begin_bulk();
   if (strip_.exchange() != nullptr) {
-    for (const Lane<Dim>& lane : strip_.lanes()) num_migrations_ += lane.num_leaving();
+    for (const Lane<Dim>& lane : strip_.lanes()) num_migrations_ += lane.rebuild.num_leaving();
   }
   parallel([this](int l) {
     for (const Side side : kSides) {
-      if (!strip_.is_remote(l, side)) strip_.lane(l).absorb(bulk(l, side));
+      if (!strip_.is_remote(l, side)) strip_.lane(l).rebuild.absorb(bulk(l, side));
     }
   });
   if (strip_.exchange() != nullptr) {
@@ -120,10 +122,10 @@ void StripRebuild<Dim>::migrate(const ForEachLane& parallel) {
     wait_bulk("migration", waits_.migration, Trace::Slice::Migration);
     for (const Side side : kSides) {
       if (strip_.neighbours().has(side))
-        strip_.outer_lane(side).absorb(strip_.exchange()->bulk(side));
+        strip_.outer_lane(side).rebuild.absorb(strip_.exchange()->bulk(side));
     }
   }
-  parallel([this](int l) { strip_.lane(l).order(); });
+  parallel([this](int l) { strip_.lane(l).rebuild.order(); });
 }
 
 template <int Dim>
@@ -149,20 +151,20 @@ void StripRebuild<Dim>::exchange_ghosts(const ForEachLane& parallel) {
   parallel([this](int l) {
     for (const Side side : kSides) {
       outbox(l, side).clear();
-      if (strip_.has_neighbour(l, side)) strip_.lane(l).pack_ghosts(side, outbox(l, side));
+      if (strip_.has_neighbour(l, side)) strip_.lane(l).rebuild.pack_ghosts(side, outbox(l, side));
     }
   });
   begin_bulk();
-  parallel([this](int l) { strip_.lane(l).list_owned(); });  // the messages travel meanwhile
+  parallel([this](int l) { strip_.lane(l).lists.list_owned(); });  // the messages travel meanwhile
   const bool is_alone = strip_.exchange() == nullptr;
   const bool returns = strip_.scheme() == CutScheme::Returned;
   if (!is_alone && !returns) begin_sizes();
   if (!is_alone) wait_bulk("ghosts", waits_.ghosts, Trace::Slice::Ghosts);
   parallel([this](int l) {
     Lane<Dim>& lane = strip_.lane(l);
-    lane.take_ghosts(bulk(l, Side::Left), bulk(l, Side::Right));
-    lane.restore_history();
-    lane.cut_chunks(chunk_pairs);
+    lane.rebuild.take_ghosts(bulk(l, Side::Left), bulk(l, Side::Right));
+    lane.rebuild.restore_history();
+    lane.lists.cut_chunks(chunk_pairs);
   });
   strip_.begin_lists();
   if (is_alone) return;

@@ -49,7 +49,7 @@ void seed_lanes(Strip<Dim>& strip, const ParticleSet& set, std::span<const int> 
       mine.push_back(set.particles[p]);
       is_bonded.push_back(bonds.is_bonded[p]);
     }
-    strip.lanes()[l].seed(cuts[l], cuts[l + 1], mine, set.bonds, bonds.lengths, is_bonded);
+    strip.lanes()[l].rebuild.seed(cuts[l], cuts[l + 1], mine, set.bonds, bonds.lengths, is_bonded);
   }
 }
 

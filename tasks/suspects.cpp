@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include <barchan/core/base/vec_text.hpp>
+#include <barchan/core/brick/diagnose.hpp>
 
 namespace barchan {
 namespace {
@@ -18,10 +19,10 @@ constexpr std::size_t kMostPartners = 6;  // that a message names
 
 /// Every rank looks among its own particles, so that where the cuts are is not in the text.
 template <int Dim>
-typename Lane<Dim>::Partners partners_of(const RunParts<Dim>& run, const Suspect& s) {
+Partners partners_of(const RunParts<Dim>& run, const Suspect& s) {
   std::vector<std::int64_t> mine;
-  for (const Lane<Dim>& lane : run.strip.lanes()) lane.find_touching(s, mine);
-  typename Lane<Dim>::Partners found;
+  for (const Lane<Dim>& lane : run.strip.lanes()) find_touching(lane.brick, s, mine);
+  Partners found;
   found.ids = run.communicator.gather_all(std::span<const std::int64_t>(mine));
   std::sort(found.ids.begin(), found.ids.end());
   for (std::size_t w = 0; w < run.world.walls.size(); ++w) {
@@ -39,8 +40,7 @@ std::string name_of_wall(const Model& model, std::int32_t wall) {
 }
 
 template <int Dim>
-std::string describe(const Model& model, const Suspect& s,
-                     const typename Lane<Dim>::Partners& touched) {
+std::string describe(const Model& model, const Suspect& s, const Partners& touched) {
   const std::string text = fmt::format("particle {} at {} with velocity {}", s.id,
                                        in_brackets(s.position, Dim), in_brackets(s.velocity, Dim));
   std::vector<std::string> names;
@@ -60,8 +60,8 @@ std::string describe_fastest(RunParts<Dim>& run) {
     if (s.speed2 > fastest.speed2) fastest = s;
   };
   for (const Lane<Dim>& lane : run.strip.lanes()) {
-    const std::int32_t row = lane.fastest_row();
-    if (row >= 0) take(lane.suspect(row));
+    const std::int32_t row = fastest_row(lane.brick);
+    if (row >= 0) take(suspect_of(lane.brick.store, row));
   }
   for (const Suspect& s : run.communicator.gather_all(std::span<const Suspect>(&fastest, 1)))
     take(s);
@@ -78,7 +78,7 @@ std::string describe_worst_overlap(RunParts<Dim>& run) {
   const auto take = [&worst](const WorstOverlap& other) {
     if (other.is_worse_than(worst)) worst = other;
   };
-  for (Lane<Dim>& lane : run.strip.lanes()) take(lane.worst_overlap());
+  for (Lane<Dim>& lane : run.strip.lanes()) take(worst_overlap(lane.brick));
   for (const auto& of_rank : run.communicator.gather_all(std::span<const WorstOverlap>(&worst, 1)))
     take(of_rank);
   return run.communicator.bcast(fmt::format(
@@ -99,8 +99,8 @@ std::string remedy_for_travel(double travel, double reach) {
       2.1 * travel);
 }
 
-template std::string describe<2>(const Model&, const Suspect&, const Lane<2>::Partners&);
-template std::string describe<3>(const Model&, const Suspect&, const Lane<3>::Partners&);
+template std::string describe<2>(const Model&, const Suspect&, const Partners&);
+template std::string describe<3>(const Model&, const Suspect&, const Partners&);
 template std::string describe_fastest(RunParts<2>&);
 template std::string describe_fastest(RunParts<3>&);
 template std::string describe_worst_overlap(RunParts<2>&);

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include <barchan/core/brick/departure.hpp>
+#include <barchan/core/brick/diagnose.hpp>
 #include <barchan/tasks/run_parts.hpp>
 
 namespace barchan {
@@ -12,7 +12,7 @@ namespace barchan {
 /// With position, velocity and what it touched.
 template <int Dim>
 [[nodiscard]] std::string describe(const Model& model, const Suspect& suspect,
-                                   const typename Lane<Dim>::Partners& touched);
+                                   const Partners& touched);
 
 /// Of all ranks; the same on every rank. Collective.
 template <int Dim>

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <barchan/core/brick/measure.hpp>
 #include <barchan/core/particles/row_particle.hpp>
 
 namespace barchan {
@@ -50,7 +51,7 @@ SearchSeconds search_of(const Strip<Dim>& strip) {
   SearchSeconds search;
   const double share = 1.0 / strip.num_lanes();
   for (const Lane<Dim>& lane : strip.lanes()) {
-    const SearchSeconds& seconds = lane.search_seconds();
+    const SearchSeconds& seconds = lane.lists.seconds();
     search.rebuild = std::max(search.rebuild, seconds.rebuild);
     search.chunks += share * seconds.chunks;
     search.bands += share * seconds.bands;
@@ -64,7 +65,8 @@ template <int Dim>
 void for_each_owned(const Strip<Dim>& strip,
                     const std::function<void(const OwnedParticle&)>& visit) {
   for (const Lane<Dim>& lane : strip.lanes()) {
-    for (std::int32_t i = 0; i < lane.store().num_owned; ++i) visit(particle(lane.store(), i));
+    for (std::int32_t i = 0; i < lane.brick.store.num_owned; ++i)
+      visit(particle(lane.brick.store, i));
   }
 }
 
@@ -73,10 +75,10 @@ void for_each_bond(Strip<Dim>& strip, const BondVisitor& visit) {
   strip.complete_halo();
   const PeriodicBox& box = strip.world().grid.box();
   for (const Lane<Dim>& lane : strip.lanes()) {
-    const BondSet<Dim>& bonds = lane.bonds();
+    const BondSet<Dim>& bonds = lane.brick.bonds;
     for (std::int32_t i = 0; i < static_cast<std::int32_t>(bonds.bonds().size()); ++i) {
-      if (!lane.counts_bond(i)) continue;
-      const double *a = lane.store().x(bonds.end_a(i)), *b = lane.store().x(bonds.end_b(i));
+      if (!lane.brick.counts_bond(i)) continue;
+      const double *a = lane.brick.store.x(bonds.end_a(i)), *b = lane.brick.store.x(bonds.end_b(i));
       Vec3 first = Vec3::Zero(), second = Vec3::Zero();
       for (int c = 0; c < Dim; ++c) {
         const double d = b[c] - a[c];
@@ -92,7 +94,7 @@ template <int Dim>
 void apply_forces(Strip<Dim>& strip, const std::function<Vec3(const OwnedParticle&)>& force) {
   constexpr std::size_t kForce = Layout<Dim>::kForce;
   for (Lane<Dim>& lane : strip.lanes()) {
-    auto& store = lane.store();
+    auto& store = lane.brick.store;
     store.external.assign(static_cast<std::size_t>(store.num_owned) * kForce, 0.0);
     for (std::int32_t i = 0; i < store.num_owned; ++i) {
       const Vec3 f = force(particle(store, i));
@@ -108,8 +110,8 @@ Measures measure(RunParts<Dim>& run) {
   Measures all;
   std::vector<WallSums> walls(run.world.walls.size());
   for (Lane<Dim>& lane : run.strip.lanes()) {
-    all.add(lane.measure(run.model.gravity));
-    const auto sums = lane.measure_walls();
+    all.add(barchan::measure(lane.brick, run.model.gravity));
+    const auto sums = measure_walls(lane.brick);
     for (std::size_t w = 0; w < sums.size(); ++w) walls[w].add(sums[w]);
   }
   reduce(run.communicator, all, walls);
@@ -127,7 +129,7 @@ Measures measure(RunParts<Dim>& run) {
 template <int Dim>
 std::uint64_t digest(const Strip<Dim>& strip) {
   std::uint64_t sum = 0;
-  for (const Lane<Dim>& lane : strip.lanes()) sum += lane.digest();
+  for (const Lane<Dim>& lane : strip.lanes()) sum += barchan::digest(lane.brick);
   strip.communicator().allreduce_sum(std::span(&sum, 1));
   return sum;
 }

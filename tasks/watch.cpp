@@ -11,6 +11,7 @@
 
 #include <barchan/core/base/error.hpp>
 #include <barchan/core/base/vec_text.hpp>
+#include <barchan/core/brick/diagnose.hpp>
 #include <barchan/tasks/agree.hpp>
 #include <barchan/tasks/suspects.hpp>
 
@@ -56,19 +57,20 @@ void Watch<Dim>::look(std::int64_t step, CheckNumbers& mine) {
     run_.strip.complete_halo();
     std::vector<double> shares(run_.strip.lanes().size(), 0.0);
     graph_.for_each_lane([&](int l) {
-      shares[static_cast<std::size_t>(l)] = run_.strip.lane(l).worst_overlap().share;
+      shares[static_cast<std::size_t>(l)] = worst_overlap(run_.strip.lane(l).brick).share;
     });
     for (const double share : shares) see_overlap(share);
   }
   for (const Lane<Dim>& lane : run_.strip.lanes())
-    mine.outside = std::max(mine.outside, lane.last_outside());
+    mine.outside = std::max(mine.outside, last_outside(lane.brick));
   mine.overlap = std::exchange(overlap_, 0.0);
 }
 
 template <int Dim>
 void Watch<Dim>::count(CheckNumbers& mine) const {
   mine.particles = run_.strip.num_owned();
-  for (const Lane<Dim>& lane : run_.strip.lanes()) mine.imbalance += lane.imbalance();
+  for (const Lane<Dim>& lane : run_.strip.lanes())
+    mine.imbalance += lane.rebuild.carry().imbalance();
 }
 
 template <int Dim>
@@ -158,7 +160,7 @@ template <int Dim>
 std::vector<Departure> Watch<Dim>::departures(std::int64_t step) const {
   std::vector<Departure> mine;
   for (const Lane<Dim>& lane : run_.strip.lanes()) {
-    const auto outside = lane.outside(step);
+    const auto outside = barchan::outside(lane.brick, step);
     mine.insert(mine.end(), outside.begin(), outside.end());
   }
   const Communicator& communicator = run_.communicator;
@@ -184,7 +186,7 @@ bool Watch<Dim>::remove_outside(std::int64_t step) {
   std::vector<std::int64_t> ids;
   for (const Departure& d : left) ids.push_back(d.id);
   LinkCounts gone;
-  for (Lane<Dim>& lane : run_.strip.lanes()) gone += lane.remove(ids);
+  for (Lane<Dim>& lane : run_.strip.lanes()) gone += lane.rebuild.remove(ids);
   std::int64_t sums[] = {gone.contacts, gone.wall_contacts, gone.bonds};
   run_.communicator.allreduce_sum(std::span<std::int64_t>(sums));
   const auto count = static_cast<std::int64_t>(left.size());

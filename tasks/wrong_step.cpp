@@ -9,6 +9,7 @@
 
 #include <barchan/core/base/error.hpp>
 #include <barchan/core/base/vec_text.hpp>
+#include <barchan/core/brick/diagnose.hpp>
 #include <barchan/tasks/suspects.hpp>
 
 namespace barchan {
@@ -48,15 +49,15 @@ template <int Dim>
 
 template <int Dim>
 [[noreturn]] void report_fast(const RunParts<Dim>& run, const Lane<Dim>& lane, std::int64_t step) {
-  const std::int32_t row = lane.first_fast_row();
-  const Suspect s = lane.suspect(row);
+  const std::int32_t row = first_fast_row(lane.brick);
+  const Suspect s = suspect_of(lane.brick.store, row);
   const double* was =
-      lane.store().reference.data() + std::size_t{Dim} * static_cast<std::size_t>(row);
+      lane.brick.store.reference.data() + std::size_t{Dim} * static_cast<std::size_t>(row);
   const double travel = run.world.dt * std::sqrt(s.speed2);
   throw StepError(
       {step, Fast, s.id, 0},
       fmt::format("in step {} {} (at {} when lists were last built): {}", step,
-                  describe<Dim>(run.model, s, lane.partners_before_step(row)),
+                  describe<Dim>(run.model, s, partners_before_step(lane.brick, row)),
                   in_brackets(was, Dim),
                   s.speed2 < std::numeric_limits<double>::max()
                       ? fmt::format("it moves {:.3g} m in one step, more than half of the smallest "
@@ -82,7 +83,7 @@ template <int Dim>
 
 template <int Dim>
 std::int64_t first_fast_id(const Lane<Dim>& lane) {
-  return lane.store().id[static_cast<std::size_t>(lane.first_fast_row())];
+  return lane.brick.store.id[static_cast<std::size_t>(first_fast_row(lane.brick))];
 }
 
 }  // namespace
@@ -92,7 +93,7 @@ int wrong_step(const Strip<Dim>& strip, const StepGraph<Dim>& graph) {
   int first = 0;
   for (int l = 0; l < strip.num_lanes(); ++l) {
     const int steps = graph.steps_done(l);
-    if (strip.lane(l).must_stop() && (first == 0 || steps < first)) first = steps;
+    if (must_stop(strip.lane(l).brick) && (first == 0 || steps < first)) first = steps;
   }
   return first;
 }
@@ -105,10 +106,10 @@ void report_wrong_step(const RunParts<Dim>& run, const StepGraph<Dim>& graph, in
   Passage passage;
   for (int l = 0; l < run.strip.num_lanes(); ++l) {
     const Lane<Dim>& lane = run.strip.lane(l);
-    if (!lane.must_stop() || graph.steps_done(l) != nth) continue;
-    force = std::max(force, lane.overload());
-    passage.add(lane.passage());
-    if (lane.is_fast() && (fast == nullptr || first_fast_id(lane) < first_fast_id(*fast)))
+    if (!must_stop(lane.brick) || graph.steps_done(l) != nth) continue;
+    force = std::max(force, overload(lane.brick));
+    passage.add(lane.brick.passage);
+    if (lane.brick.is_fast && (fast == nullptr || first_fast_id(lane) < first_fast_id(*fast)))
       fast = &lane;
   }
   if (passage.exists()) report_passage(run, passage, step);

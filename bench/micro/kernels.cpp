@@ -1,5 +1,6 @@
 #include <string>
 
+#include <barchan/core/brick/halo.hpp>
 #include <barchan/core/particles/fields.hpp>
 #include <barchan/core/simd/denormals.hpp>
 
@@ -21,16 +22,16 @@ struct Pairs {
   AlignedVector<double> spring;
 
   Pairs(Lane<Dim>& lane, bool only_touching) {
-    const PairList& list = lane.pairs();
+    const PairList& list = lane.brick.pairs;
     for (std::size_t k = 0; k < list.i.size(); ++k) {
-      if (only_touching && !touches(lane.store(), list.i[k], list.j[k])) continue;
+      if (only_touching && !touches(lane.brick.store, list.i[k], list.j[k])) continue;
       i.push_back(list.i[k]);
       j.push_back(list.j[k]);
       code.push_back(list.code[k]);
     }
     while (i.size() % kBatch != 0) {
-      i.push_back(lane.store().waste());
-      j.push_back(lane.store().waste() + 1);
+      i.push_back(lane.brick.store.waste());
+      j.push_back(lane.brick.store.waste() + 1);
       code.push_back(0);
     }
     masks.resize(i.size() / 8);
@@ -48,7 +49,7 @@ struct Pairs {
   }
 
   PairJob job(Lane<Dim>& lane) {
-    auto& store = lane.store();
+    auto& store = lane.brick.store;
     PairJob job;
     job.motion = store.motion.data();
     job.spin = store.spin.data();
@@ -58,9 +59,9 @@ struct Pairs {
     job.code = code.data();
     job.history = spring.data();
     job.end = static_cast<std::int64_t>(i.size());
-    job.dt = lane.world().dt;
-    job.box = lane.world().grid.box();
-    job.laws = lane.world().laws.view();
+    job.dt = lane.brick.world->dt;
+    job.box = lane.brick.world->grid.box();
+    job.laws = lane.brick.world->laws.view();
     return job;
   }
 };
@@ -88,7 +89,7 @@ void pairs(benchmark::State& state, VectorWidth width) {
   Pairs<Dim> list(lane, Dim == 3);
   const PairJob job = list.job(lane);
   const simd::DenormalsAreZero quiet;  // as in a step
-  for (auto _ : state) lane.world().kernels.pairs(job);
+  for (auto _ : state) lane.brick.world->kernels.pairs(job);
   const auto n = static_cast<double>(list.i.size());
   report(state, n, pair_cost<Dim>(n, static_cast<double>(state.range(0))));
 }
@@ -99,9 +100,9 @@ void narrow(benchmark::State& state, VectorWidth width) {
   Lane<Dim>& lane = *sample->lane;
   Pairs<Dim> list(lane, false);
   const PairJob job = list.job(lane);
-  if (lane.world().kernels.narrow == nullptr)
+  if (lane.brick.world->kernels.narrow == nullptr)
     return state.SkipWithError("this width has no narrow phase of its own");
-  for (auto _ : state) lane.world().kernels.narrow(job, 0.0, list.masks.data());
+  for (auto _ : state) lane.brick.world->kernels.narrow(job, 0.0, list.masks.data());
   const auto n = static_cast<double>(list.i.size());
   report(state, n,
          {8.125 + 64.0 * static_cast<double>(state.range(0)) / n, 8.125 + 64.0,
@@ -111,7 +112,7 @@ void narrow(benchmark::State& state, VectorWidth width) {
 template <int Dim>
 void rows(benchmark::State& state, VectorWidth width) {
   const auto sample = make_sample<Dim>(state.range(0), width);
-  auto& store = sample->lane->store();
+  auto& store = sample->lane->brick.store;
   RowJob job;
   job.motion = store.motion.data();
   job.spin = store.spin.data();
@@ -142,9 +143,9 @@ void steps(benchmark::State& state, VectorWidth width) {
 template <int Dim>
 void pack_halo(benchmark::State& state) {
   const auto sample = make_sample<Dim>(state.range(0), VectorWidth::Scalar, true);
-  std::vector<std::byte> message(sample->lane->halo_bytes(Side::Right));
+  std::vector<std::byte> message(halo_bytes(sample->lane->brick, Side::Right));
   for (auto _ : state) {
-    sample->lane->pack_halo(Side::Right, message);
+    pack_halo(sample->lane->brick, Side::Right, message);
     benchmark::ClobberMemory();
   }
   const double record = double{halo_record_bytes<Dim>()}, bytes = record_bytes(Dim) + record;
@@ -154,10 +155,10 @@ void pack_halo(benchmark::State& state) {
 template <int Dim>
 void unpack_halo(benchmark::State& state) {
   const auto sample = make_sample<Dim>(state.range(0), VectorWidth::Scalar, true);
-  std::vector<std::byte> message(sample->right->halo_bytes(Side::Left));
-  sample->right->pack_halo(Side::Left, message);
+  std::vector<std::byte> message(halo_bytes(sample->right->brick, Side::Left));
+  pack_halo(sample->right->brick, Side::Left, message);
   for (auto _ : state) {
-    sample->lane->unpack_halo(Side::Right, message);
+    unpack_halo(sample->lane->brick, Side::Right, message);
     benchmark::ClobberMemory();
   }
   const double record = double{halo_record_bytes<Dim>()}, bytes = 2.0 * record_bytes(Dim) + record;

@@ -30,16 +30,16 @@ Seconds rebuild(Lane<Dim>& lane) {
     last = now;
   };
   std::vector<std::byte> to_left, to_right;
-  lane.begin_rebuild(lane.slab_begin(), lane.slab_end(), to_left, to_right);
+  lane.rebuild.begin(lane.brick.slab_begin, lane.brick.slab_end, to_left, to_right);
   lap(Leave);
-  lane.order();
+  lane.rebuild.order();
   lap(Order);
-  lane.list_owned();
-  lane.take_ghosts({}, {});
+  lane.lists.list_owned();
+  lane.rebuild.take_ghosts({}, {});
   lap(Candidates);
-  lane.restore_history();
+  lane.rebuild.restore_history();
   lap(History);
-  lane.cut_chunks(1 << 14);
+  lane.lists.cut_chunks(1 << 14);
   lap(Chunks);
   return seconds;
 }
@@ -65,8 +65,8 @@ void part_of_rebuild(benchmark::State& state, Part part) {
   step(lane);  // history to carry
   for (auto _ : state) state.SetIterationTime(rebuild(lane)[part]);
   const auto n = static_cast<double>(state.range(0));
-  report(state, n, least<Dim>(part, static_cast<double>(lane.num_pairs()) / n));
-  state.counters["candidates_each"] = static_cast<double>(lane.num_pairs()) / n;
+  report(state, n, least<Dim>(part, static_cast<double>(lane.brick.num_pairs()) / n));
+  state.counters["candidates_each"] = static_cast<double>(lane.brick.num_pairs()) / n;
 }
 
 template <int Dim>

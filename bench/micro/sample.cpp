@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <barchan/core/brick/measure.hpp>
 #include <barchan/core/deck/deck.hpp>
 #include <barchan/core/generators/make_particles.hpp>
 #include <barchan/tasks/forecast.hpp>
@@ -92,20 +93,20 @@ template <int Dim>
 void settle(Sample<Dim>& sample) {
   Lane<Dim>&left = *sample.lane, *right = sample.right.get();
   std::vector<std::byte> to_right, to_left;
-  left.order();
+  left.rebuild.order();
   if (right != nullptr) {
-    right->order();
-    left.pack_ghosts(Side::Right, to_right);
-    right->pack_ghosts(Side::Left, to_left);
-    right->list_owned();
-    right->take_ghosts(to_right, {});
-    right->restore_history();
-    right->cut_chunks(1 << 14);
+    right->rebuild.order();
+    left.rebuild.pack_ghosts(Side::Right, to_right);
+    right->rebuild.pack_ghosts(Side::Left, to_left);
+    right->lists.list_owned();
+    right->rebuild.take_ghosts(to_right, {});
+    right->rebuild.restore_history();
+    right->lists.cut_chunks(1 << 14);
   }
-  left.list_owned();
-  left.take_ghosts({}, to_left);
-  left.restore_history();
-  left.cut_chunks(std::int64_t{1} << 60);
+  left.lists.list_owned();
+  left.rebuild.take_ghosts({}, to_left);
+  left.rebuild.restore_history();
+  left.lists.cut_chunks(std::int64_t{1} << 60);
 }
 
 }  // namespace
@@ -131,25 +132,25 @@ std::unique_ptr<Sample<Dim>> make_sample(std::int64_t count, VectorWidth width, 
   const auto seed = [&](int side, int begin, int end) {
     auto lane = std::make_unique<Lane<Dim>>(world);
     if (has_cut) {
-      lane->band(side == 0 ? Side::Right : Side::Left).exists = true;
+      lane->brick.band(side == 0 ? Side::Right : Side::Left).exists = true;
     }
     const std::vector<char> bonded(parts[side].size(), 0);
-    lane->seed(begin, end, parts[side], {}, {}, bonded);
+    lane->rebuild.seed(begin, end, parts[side], {}, {}, bonded);
     return lane;
   };
   sample->lane = seed(0, 0, cut);
   if (has_cut) sample->right = seed(1, cut, slabs);
   settle(*sample);
-  sample->touching = sample->lane->measure(deck.model.gravity).contacts;
+  sample->touching = barchan::measure(sample->lane->brick, deck.model.gravity).contacts;
   return sample;
 }
 
 template <int Dim>
 void step(Lane<Dim>& lane) {
   StepFrame frame;
-  frame.kick = lane.world().dt;
-  lane.begin_step(frame);
-  for (int c = 0; c < lane.num_chunks(); ++c) lane.run_chunk(c);
+  frame.kick = lane.brick.world->dt;
+  lane.step.begin(frame);
+  for (int c = 0; c < lane.brick.num_chunks(); ++c) lane.step.run_chunk(c);
 }
 
 template std::unique_ptr<Sample<2>> make_sample<2>(std::int64_t, VectorWidth, bool);

@@ -6,7 +6,7 @@
 
 namespace barchan {
 
-/// Sums over a lane, added over lanes and ranks in any order.
+/// Sums over a brick, added over bricks and ranks in any order.
 struct Measures {
   ExactSum kinetic, elastic, gravitational;  ///< [J]
   ExactSum momentum[3];                      ///< [N·s]
@@ -25,12 +25,6 @@ struct Measures {
 struct Travel {
   double distance2 = 0.0;  ///< largest squared displacement [m²]
   double speed2 = 0.0;     ///< largest squared speed [m²/s²]
-};
-
-/// Seconds of contact search, by the phase that it is part of.
-struct SearchSeconds {
-  double rebuild = 0.0;
-  double chunks = 0.0, bands = 0.0;  ///< all-pairs searches anew in every step
 };
 
 }  // namespace barchan

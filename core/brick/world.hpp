@@ -22,7 +22,7 @@ namespace barchan {
   return distance2 / (0.25 * skin * skin);
 }
 
-/// What all lanes of a run share.
+/// What all bricks of a run share.
 template <int Dim>
 struct World {
   Grid<Dim> grid;
@@ -44,6 +44,14 @@ struct World {
   /// passed (passage.hpp) [m].
   [[nodiscard]] double most_travel(double lists_skin) const {
     return std::max(0.5 * lists_skin, quick_travel);
+  }
+
+  /// Of candidates that do not touch most are left out of the step (packing.hpp).
+  [[nodiscard]] bool packs() const {
+    return kernels.narrow != nullptr && search == ContactSearchKind::Cells;
+  }
+  [[nodiscard]] const History& history_form() const {
+    return laws.law().template in<Dim>().history;
   }
 
   /// Walls where the run begins. @pre the grid is made

@@ -211,6 +211,23 @@ template Bond<2> bond_of(const BondData&, double);
 template Bond<3> bond_of(const BondData&, double);
 template BondData data_of(const Bond<2>&);
 template BondData data_of(const Bond<3>&);
+template <int Dim>
+void BondSet<Dim>::require_short(const Grid<Dim>& grid, const ParticleStore<Dim>& store) const {
+  const auto slab = [&](std::int32_t row) {
+    return static_cast<int>(store.key[static_cast<std::size_t>(row)] / grid.slab_size());
+  };
+  for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.size()); ++b) {
+    int apart = std::abs(slab(end_a(b)) - slab(end_b(b)));
+    if (grid.is_periodic(0)) apart = std::min(apart, grid.num_slabs() - apart);
+    if (apart <= 1) continue;
+    const auto& bond = bonds_[static_cast<std::size_t>(b)];
+    throw RunError("the bond between particles " + std::to_string(bond.id_a) + " and " +
+                   std::to_string(bond.id_b) +
+                   " has grown longer than a cell is wide: give it a tensile strength, or a larger "
+                   "search.skin");
+  }
+}
+
 template class BondSet<2>;
 template class BondSet<3>;
 

@@ -11,6 +11,7 @@
 #include <barchan/core/model/model.hpp>
 #include <barchan/core/particles/particle_store.hpp>
 #include <barchan/core/search/bonded_pairs.hpp>
+#include <barchan/core/search/grid.hpp>
 
 namespace barchan {
 
@@ -61,6 +62,11 @@ class BondSet {
   /// Finds the ends, drops bonds with no owned end, and sorts each particle's bonds by partner.
   /// Throws RunError when an end is neither owned nor a ghost (the bond outgrew the halo).
   void resolve(ParticleStore<Dim>& store);
+
+  /// A longer bond would reach past a band to rows that do not wait for ghosts. Refused on one rank
+  /// too, where it would do no harm, so that a run does not depend on the number of ranks.
+  /// Errors: RunError: a bond longer than a cell is wide. @pre resolve()
+  void require_short(const Grid<Dim>& grid, const ParticleStore<Dim>& store) const;
 
   /// Forces of one group, kept until add_to_rows. @return bonds that broke now, by index
   std::span<const std::int32_t> compute(Group group, const ParticleStore<Dim>& store,

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include <barchan/core/base/rows.hpp>
 #include <barchan/core/base/side.hpp>
 #include <barchan/core/particles/layout.hpp>
 
@@ -36,6 +37,10 @@ struct ParticleStore {
   [[nodiscard]] std::int32_t waste() const { return num_owned; }
   [[nodiscard]] std::int32_t ghost_begin(Side side) const {
     return num_owned + 2 + (side == Side::Right ? num_ghosts[0] : 0);
+  }
+  [[nodiscard]] Rows ghosts(Side side) const {
+    const std::int32_t begin = ghost_begin(side);
+    return {begin, begin + num_ghosts[index_of(side)]};
   }
   [[nodiscard]] std::int32_t size() const { return num_owned + 2 + num_ghosts[0] + num_ghosts[1]; }
   [[nodiscard]] bool is_owned(std::int32_t i) const { return i < num_owned; }

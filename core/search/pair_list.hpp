@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include <barchan/core/laws/history.hpp>
 #include <barchan/core/particles/layout.hpp>
 
 namespace barchan {
@@ -19,7 +20,7 @@ struct PairList {
   AlignedVector<double> history;     ///< per batch of eight: number by number
   int history_length = 0;            ///< numbers per pair (laws/history.hpp)
 
-  // Pairs of each block that touch or nearly do, packed to its front (lane_touching.cpp); empty
+  // Pairs of each block that touch or nearly do, packed to its front (brick/packing.hpp); empty
   // where every candidate is worked on.
   AlignedVector<std::int32_t> packed_i, packed_j;
   AlignedVector<std::uint8_t> packed_code, mask;
@@ -79,6 +80,10 @@ struct PairList {
   [[nodiscard]] const double* history_of(std::int64_t k) const {
     return const_cast<PairList*>(this)->history_of(k);
   }
+  /// In a block that is packed: whether the pair is.
+  [[nodiscard]] bool is_packed(std::int64_t k) const {
+    return (mask[static_cast<std::size_t>(k / kBatch)] >> (k % kBatch) & 1) != 0;
+  }
   [[nodiscard]] double* history_of_block(std::int64_t begin) {
     return history.data() + begin * history_length;
   }
@@ -107,6 +112,18 @@ struct PairBlock {
       0.0;  ///< mean travel of the two of a pair up to which no other can touch [m]
 
   [[nodiscard]] std::int64_t num_worked_on() const { return is_packed ? num_packed : end - begin; }
+  /// Calls f(k, numbers) for all pairs of the block with their history, number c at [c·kBatch],
+  /// wherever it is.
+  template <class F>
+  void for_each_candidate(const PairList& list, F&& f) const {
+    static constexpr double kNone[kMostHistory * kBatch] = {};
+    std::int64_t packed = begin;
+    for (std::int64_t k = begin; k < end; ++k) {
+      const bool has_place = !is_packed || list.is_packed(k);
+      f(static_cast<std::size_t>(k), has_place ? list.history_of(is_packed ? packed : k) : kNone);
+      packed += has_place ? 1 : 0;
+    }
+  }
   /// Calls f(k, i, j) for the pairs that have a result.
   template <class F>
   void for_each_worked_on(const PairList& list, F&& f) const {

@@ -6,7 +6,10 @@
 #include <span>
 #include <vector>
 
+#include <barchan/core/brick/checkpoint.hpp>
+#include <barchan/core/brick/halo.hpp>
 #include <barchan/core/brick/lane.hpp>
+#include <barchan/core/brick/measure.hpp>
 #include <barchan/core/model/model.hpp>
 #include <barchan/core/particles/share.hpp>
 
@@ -24,10 +27,10 @@ class Sample {
   /// @param returns  the published exchange: the lane on the right computes the pairs of the cut
   explicit Sample(bool returns = false) : world_(make_world()) {
     for (auto& lane : lanes_) lane = std::make_unique<Lane<Dim>>(world_);
-    lanes_[0]->band(Side::Right).exists = true;
-    lanes_[0]->band(Side::Right).returns = returns;
-    lanes_[1]->band(Side::Left).exists = true;
-    lanes_[1]->band(Side::Left).returns = returns;
+    lanes_[0]->brick.band(Side::Right).exists = true;
+    lanes_[0]->brick.band(Side::Right).returns = returns;
+    lanes_[1]->brick.band(Side::Left).exists = true;
+    lanes_[1]->brick.band(Side::Left).returns = returns;
   }
 
   [[nodiscard]] const World<Dim>& world() const { return world_; }
@@ -50,12 +53,12 @@ class Sample {
     seed();
     std::array<std::array<Bytes, 2>, 2> out;
     const int middle = cut(1) + (to_right ? -1 : 1);  // a slab changes its lane
-    lanes_[0]->begin_rebuild(0, middle, out[0][0], out[0][1]);
-    lanes_[1]->begin_rebuild(middle, cut(2), out[1][0], out[1][1]);
+    lanes_[0]->rebuild.begin(0, middle, out[0][0], out[0][1]);
+    lanes_[1]->rebuild.begin(middle, cut(2), out[1][0], out[1][1]);
     change(to_right ? out[0][1] : out[1][0]);
-    lanes_[0]->absorb(out[1][0]);
-    lanes_[1]->absorb(out[0][1]);
-    for (auto& lane : lanes_) lane->order();
+    lanes_[0]->rebuild.absorb(out[1][0]);
+    lanes_[1]->rebuild.absorb(out[0][1]);
+    for (auto& lane : lanes_) lane->rebuild.order();
     exchange_ghosts(true, [](Bytes&) {});
     step();
     step();
@@ -83,7 +86,7 @@ class Sample {
   void results(Change&& change) {
     seed();
     begin_step();
-    lanes_[1]->finish_band(Side::Left);
+    lanes_[1]->step.finish_band(Side::Left);
     const std::vector<double> sent = returned_forces();
     const auto raw = std::as_bytes(std::span(sent));
     Bytes message(raw.begin(), raw.end());
@@ -91,32 +94,32 @@ class Sample {
     std::vector<double> received(message.size() / sizeof(double));
     if (!received.empty())
       std::memcpy(received.data(), message.data(), received.size() * sizeof(double));
-    lanes_[0]->finish_right_band(received);
+    lanes_[0]->step.finish_right_band(received);
     save();
   }
 
   /// One lane goes on from a share that was checked.
   void restore(const CheckpointShare& share) {
     Lane<Dim> lane(world_);
-    lane.restore(0, world_.grid.num_slabs(), share);
-    lane.order();
-    lane.list_owned();
-    lane.take_ghosts({}, {});
-    lane.restore_history();
-    lane.cut_chunks(64);
+    barchan::restore(lane.brick, lane.rebuild, 0, world_.grid.num_slabs(), share);
+    lane.rebuild.order();
+    lane.lists.list_owned();
+    lane.rebuild.take_ghosts({}, {});
+    lane.rebuild.restore_history();
+    lane.lists.cut_chunks(64);
     for (int n = 0; n < 2; ++n) {
-      lane.begin_step({world_.dt, {}, 0.0});
-      for (int c = 0; c < lane.num_chunks(); ++c) lane.run_chunk(c);
+      lane.step.begin({world_.dt, {}, 0.0});
+      for (int c = 0; c < lane.brick.num_chunks(); ++c) lane.step.run_chunk(c);
     }
     CheckpointShare again;
-    lane.save(again);
-    (void)lane.measure(Vec3::Zero());
+    barchan::save(lane.brick, again);
+    (void)barchan::measure(lane.brick, Vec3::Zero());
   }
 
  private:
   [[nodiscard]] std::vector<double> returned_forces() {
     std::vector<double> forces;
-    lanes_[1]->results(forces);
+    take_results(lanes_[1]->brick, forces);
     return forces;
   }
 
@@ -165,8 +168,8 @@ class Sample {
         if (slab >= cut(l) && slab < cut(l + 1)) mine.push_back(p);
       }
       const std::vector<char> bonded(mine.size(), 1);
-      lanes_[l]->seed(cut(l), cut(l + 1), mine, bonds, lengths, bonded);
-      lanes_[l]->order();
+      lanes_[l]->rebuild.seed(cut(l), cut(l + 1), mine, bonds, lengths, bonded);
+      lanes_[l]->rebuild.order();
     }
   }
 
@@ -179,39 +182,40 @@ class Sample {
   template <class Change>
   void exchange_ghosts(bool to_right, Change&& change) {
     Bytes left, right;  // to the lane on that side
-    lanes_[0]->pack_ghosts(Side::Right, right);
-    lanes_[1]->pack_ghosts(Side::Left, left);
+    lanes_[0]->rebuild.pack_ghosts(Side::Right, right);
+    lanes_[1]->rebuild.pack_ghosts(Side::Left, left);
     change(to_right ? right : left);
-    for (auto& lane : lanes_) lane->list_owned();
-    lanes_[0]->take_ghosts({}, left);
-    lanes_[1]->take_ghosts(right, {});
+    for (auto& lane : lanes_) lane->lists.list_owned();
+    lanes_[0]->rebuild.take_ghosts({}, left);
+    lanes_[1]->rebuild.take_ghosts(right, {});
     for (auto& lane : lanes_) {
-      lane->restore_history();
-      lane->cut_chunks(64);
+      lane->rebuild.restore_history();
+      lane->lists.cut_chunks(64);
     }
   }
 
   void begin_step() {
     for (auto& lane : lanes_) {
-      lane->begin_step({world_.dt, {}, 0.0});
-      for (int c = 0; c < lane->num_chunks(); ++c) lane->run_chunk(c);
+      lane->step.begin({world_.dt, {}, 0.0});
+      for (int c = 0; c < lane->brick.num_chunks(); ++c) lane->step.run_chunk(c);
     }
   }
 
   template <class Change>
   void step(bool to_right, Change&& change) {
     begin_step();
-    lanes_[1]->finish_band(Side::Left);
-    if (lanes_[0]->band(Side::Right).returns)
-      lanes_[0]->finish_right_band(returned_forces());
+    lanes_[1]->step.finish_band(Side::Left);
+    if (lanes_[0]->brick.band(Side::Right).returns)
+      lanes_[0]->step.finish_right_band(returned_forces());
     else
-      lanes_[0]->finish_band(Side::Right);
-    Bytes right(lanes_[0]->halo_bytes(Side::Right)), left(lanes_[1]->halo_bytes(Side::Left));
-    lanes_[0]->pack_halo(Side::Right, right);
-    lanes_[1]->pack_halo(Side::Left, left);
+      lanes_[0]->step.finish_band(Side::Right);
+    Bytes right(halo_bytes(lanes_[0]->brick, Side::Right)),
+        left(halo_bytes(lanes_[1]->brick, Side::Left));
+    pack_halo(lanes_[0]->brick, Side::Right, right);
+    pack_halo(lanes_[1]->brick, Side::Left, left);
     change(to_right ? right : left);
-    lanes_[0]->unpack_halo(Side::Right, left);
-    lanes_[1]->unpack_halo(Side::Left, right);
+    unpack_halo(lanes_[0]->brick, Side::Right, left);
+    unpack_halo(lanes_[1]->brick, Side::Left, right);
   }
   void step() {
     step(true, [](Bytes&) {});
@@ -220,9 +224,9 @@ class Sample {
   void save() {
     CheckpointShare share;
     for (auto& lane : lanes_) {
-      lane->save(share);
-      (void)lane->measure(Vec3::Zero());
-      (void)lane->travel();
+      barchan::save(lane->brick, share);
+      (void)barchan::measure(lane->brick, Vec3::Zero());
+      (void)barchan::travel(lane->brick);
     }
   }
 

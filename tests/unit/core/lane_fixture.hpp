@@ -10,7 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include <barchan/core/brick/checkpoint.hpp>
+#include <barchan/core/brick/diagnose.hpp>
+#include <barchan/core/brick/halo.hpp>
 #include <barchan/core/brick/lane.hpp>
+#include <barchan/core/brick/measure.hpp>
 #include <barchan/core/particles/share.hpp>
 
 // Lanes side by side without ranks or threads: what passes between them goes from hand to hand.
@@ -103,8 +107,8 @@ class Lanes {
                              ? 1
                              : 0);
       }
-      lanes_[l]->seed(cuts_[l], cuts_[l + 1], mine, bonds, lengths, bonded);
-      lanes_[l]->order();
+      lanes_[l]->rebuild.seed(cuts_[l], cuts_[l + 1], mine, bonds, lengths, bonded);
+      lanes_[l]->rebuild.order();
     }
     exchange_ghosts();
   }
@@ -112,8 +116,8 @@ class Lanes {
   /// Instead of seed. @param shares  one a lane
   void restore(std::span<const CheckpointShare> shares) {
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      lanes_[l]->restore(cuts_[l], cuts_[l + 1], shares[l]);
-      lanes_[l]->order();
+      barchan::restore(lanes_[l]->brick, lanes_[l]->rebuild, cuts_[l], cuts_[l + 1], shares[l]);
+      lanes_[l]->rebuild.order();
     }
     exchange_ghosts();
   }
@@ -122,29 +126,29 @@ class Lanes {
     cuts_ = cuts;
     std::vector<std::vector<std::byte>> left(lanes_.size()), right(lanes_.size());
     for (std::size_t l = 0; l < lanes_.size(); ++l)
-      lanes_[l]->begin_rebuild(cuts_[l], cuts_[l + 1], left[l], right[l]);
+      lanes_[l]->rebuild.begin(cuts_[l], cuts_[l + 1], left[l], right[l]);
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      if (lanes_[l]->band(Side::Left).exists) lanes_[l]->absorb(right[before(l)]);
-      if (lanes_[l]->band(Side::Right).exists) lanes_[l]->absorb(left[after(l)]);
+      if (lanes_[l]->brick.band(Side::Left).exists) lanes_[l]->rebuild.absorb(right[before(l)]);
+      if (lanes_[l]->brick.band(Side::Right).exists) lanes_[l]->rebuild.absorb(left[after(l)]);
     }
-    for (auto& lane : lanes_) lane->order();
+    for (auto& lane : lanes_) lane->rebuild.order();
     exchange_ghosts();
   }
 
   void step() {
     const StepFrame frame{world_->dt, {}, 0.0, step_++};
     for (auto& lane : lanes_) {
-      lane->begin_step(frame);
-      for (int c = 0; c < lane->num_chunks(); ++c) lane->run_chunk(c);
+      lane->step.begin(frame);
+      for (int c = 0; c < lane->brick.num_chunks(); ++c) lane->step.run_chunk(c);
     }
     for (auto& lane : lanes_) {
-      for (const auto side : kSides) {
-        if (lane->band(side).exists) lane->finish_band(side);
+      for (const Side side : kSides) {
+        if (lane->brick.band(side).exists) lane->step.finish_band(side);
       }
     }
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      if (lanes_[l]->band(Side::Left).exists) send(before(l), Side::Right, l, Side::Left);
-      if (lanes_[l]->band(Side::Right).exists) send(after(l), Side::Left, l, Side::Right);
+      if (lanes_[l]->brick.band(Side::Left).exists) send(before(l), Side::Right, l, Side::Left);
+      if (lanes_[l]->brick.band(Side::Right).exists) send(after(l), Side::Left, l, Side::Right);
     }
   }
 
@@ -153,24 +157,23 @@ class Lanes {
     Springs all;
     sides_agree = true;
     for (const auto& lane : lanes_) {
-      const auto& store = lane->store();
-      const auto take = [&](const PairList& list) {
-        for (std::int64_t k = 0; k < list.size(); ++k) {
-          if (!list.has_history(k)) continue;
-          const auto at = static_cast<std::size_t>(k);
+      const auto& store = lane->brick.store;
+      const History& form = world_->history_form();
+      const auto take = [&](const PairList& list, const PairBlock& block) {
+        block.for_each_candidate(list, [&](std::size_t at, const double* numbers) {
           const std::int64_t a = store.id[static_cast<std::size_t>(list.i[at])],
                              b = store.id[static_cast<std::size_t>(list.j[at])];
           std::vector<double> s;
-          const History& form = world_->laws.law().template in<Dim>().history;
           for (int c = 0; c < form.length; ++c)
-            s.push_back(form.sign(c, a > b) * list.history_of(k)[c * kBatch]);
+            s.push_back(form.sign(c, a > b) * numbers[c * kBatch]);
+          if (std::ranges::all_of(s, [](double number) { return number == 0.0; })) return;
           const auto [it, is_new] = all.try_emplace(std::minmax(a, b), s);
           if (!is_new && it->second != s) sides_agree = false;
-        }
+        });
       };
-      take(lane->pairs());
-      for (const auto side : kSides) {
-        if (lane->band(side).exists) take(lane->band(side).across);
+      for (const RowBlock& block : lane->brick.blocks) take(lane->brick.pairs, block);
+      for (const Band& band : lane->brick.bands) {
+        for (const PairBlock& block : band.blocks) take(band.across, block);
       }
     }
     return all;
@@ -178,7 +181,7 @@ class Lanes {
 
   [[nodiscard]] std::uint64_t digest() const {
     std::uint64_t sum = 0;
-    for (const auto& lane : lanes_) sum += lane->digest();
+    for (const auto& lane : lanes_) sum += barchan::digest(lane->brick);
     return sum;
   }
   [[nodiscard]] std::size_t size() const { return lanes_.size(); }
@@ -192,7 +195,7 @@ class Lanes {
 
   void place_band(std::size_t l) {
     const bool wraps = world_->grid.is_periodic(0) && lanes_.size() > 1;
-    Band &left = lanes_[l]->band(Side::Left), &right = lanes_[l]->band(Side::Right);
+    Band &left = lanes_[l]->brick.band(Side::Left), &right = lanes_[l]->brick.band(Side::Right);
     left.exists = l > 0 || wraps;
     right.exists = l + 1 < lanes_.size() || wraps;
   }
@@ -200,21 +203,23 @@ class Lanes {
   void exchange_ghosts() {
     std::vector<std::vector<std::byte>> left(lanes_.size()), right(lanes_.size());
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      if (lanes_[l]->band(Side::Left).exists) lanes_[l]->pack_ghosts(Side::Left, left[l]);
-      if (lanes_[l]->band(Side::Right).exists) lanes_[l]->pack_ghosts(Side::Right, right[l]);
-      lanes_[l]->list_owned();
+      if (lanes_[l]->brick.band(Side::Left).exists)
+        lanes_[l]->rebuild.pack_ghosts(Side::Left, left[l]);
+      if (lanes_[l]->brick.band(Side::Right).exists)
+        lanes_[l]->rebuild.pack_ghosts(Side::Right, right[l]);
+      lanes_[l]->lists.list_owned();
     }
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      lanes_[l]->take_ghosts(right[before(l)], left[after(l)]);
-      lanes_[l]->restore_history();
-      lanes_[l]->cut_chunks(64);
+      lanes_[l]->rebuild.take_ghosts(right[before(l)], left[after(l)]);
+      lanes_[l]->rebuild.restore_history();
+      lanes_[l]->lists.cut_chunks(64);
     }
   }
 
   void send(std::size_t from, Side from_side, std::size_t to, Side to_side) {
-    std::vector<std::byte> message(lanes_[from]->halo_bytes(from_side));
-    lanes_[from]->pack_halo(from_side, message);
-    lanes_[to]->unpack_halo(to_side, message);
+    std::vector<std::byte> message(halo_bytes(lanes_[from]->brick, from_side));
+    pack_halo(lanes_[from]->brick, from_side, message);
+    unpack_halo(lanes_[to]->brick, to_side, message);
   }
 
   World<Dim>* world_;

@@ -116,7 +116,7 @@ TEST(Lane, AnyChunksGiveTheSameBits) {
   for (const std::int64_t pairs : {1, 300, 1 << 20}) {
     Lanes<2> lanes(world, {0, 6, 12});
     lanes.seed(particles);
-    for (std::size_t l = 0; l < 2; ++l) lanes[l].cut_chunks(pairs);
+    for (std::size_t l = 0; l < 2; ++l) lanes[l].lists.cut_chunks(pairs);
 
     for (int n = 0; n < 3; ++n) lanes.step();
 
@@ -203,7 +203,7 @@ TEST(Lane, NamesTheLowerIdOfTheWorstOverlapFirstOnAnyCuts) {
       lanes.seed(pair);
       WorstOverlap worst;
       for (std::size_t l = 0; l + 1 < cuts.size(); ++l) {
-        const WorstOverlap here = lanes[l].worst_overlap();
+        const WorstOverlap here = worst_overlap(lanes[l].brick);
         if (here.is_worse_than(worst)) worst = here;
       }
       EXPECT_EQ(worst.id, std::min(pair[0].id, pair[1].id));
@@ -231,7 +231,7 @@ TEST(Lane, BondsMoveWithTheirParticlesAndKeepTheirState) {
   const auto states = [&lanes] {
     std::map<std::int64_t, std::array<double, 2>> all;
     for (std::size_t l = 0; l < lanes.size(); ++l) {
-      for (const auto& bond : lanes[l].bonds().bonds()) {
+      for (const auto& bond : lanes[l].brick.bonds.bonds()) {
         const auto [it, is_new] = all.try_emplace(bond.id_a, bond.state);
         EXPECT_EQ(it->second, bond.state)
             << "bond of particle " << bond.id_a << " differs across a cut";
@@ -264,7 +264,7 @@ TEST(Lane, RefusesABondLongerThanACellOnAnyNumberOfLanes) {
     Lanes<2> lanes(world, cuts);
     lanes.seed(pair, std::vector<BondData>{{1, 2, 0}});
     for (std::size_t l = 0; l < lanes.size(); ++l) {
-      auto& store = lanes[l].store();
+      auto& store = lanes[l].brick.store;
       for (std::int32_t i = 0; i < store.num_owned; ++i) {
         if (store.id[static_cast<std::size_t>(i)] == 2) store.x(i)[0] += width;
       }
@@ -282,14 +282,14 @@ TEST(Lane, TellsAfterARebuildThatAStepWasComputedBeyondHalfTheSkin) {
   const double last_step = world.dt * 1.0;  // of that nothing was computed with the old lists
   Lanes<2> lanes(world, {0, 12});
   lanes.seed(particles);
-  lanes[0].store().x(3)[1] += 0.4999 * kSkin + last_step;
+  lanes[0].brick.store.x(3)[1] += 0.4999 * kSkin + last_step;
   lanes.rebuild({0, 12});
-  EXPECT_EQ(lanes[0].travel().distance2, 0.0);
-  lanes[0].store().x(3)[1] += 0.5001 * kSkin + last_step;
+  EXPECT_EQ(barchan::travel(lanes[0].brick).distance2, 0.0);
+  lanes[0].brick.store.x(3)[1] += 0.5001 * kSkin + last_step;
 
   lanes.rebuild({0, 12});
 
-  EXPECT_NEAR(std::sqrt(lanes[0].travel().distance2), 0.5001 * kSkin, 1e-12);
+  EXPECT_NEAR(std::sqrt(barchan::travel(lanes[0].brick).distance2), 0.5001 * kSkin, 1e-12);
 }
 
 TEST(Lane, ExternalForcesMoveWithTheirParticles) {
@@ -298,7 +298,7 @@ TEST(Lane, ExternalForcesMoveWithTheirParticles) {
   World<2> world = world_of<2>(domain, kCutoff, kSkin, 60);
   Lanes<2> lanes(world, {0, 6, 12});
   lanes.seed(particles);
-  auto& store = lanes[0].store();  // the other lane has none yet
+  auto& store = lanes[0].brick.store;  // the other lane has none yet
   store.external.assign(static_cast<std::size_t>(store.num_owned) * Layout<2>::kForce, 0.0);
   for (std::int32_t i = 0; i < store.num_owned; ++i) {
     store.external[static_cast<std::size_t>(i) * Layout<2>::kForce] =
@@ -311,7 +311,7 @@ TEST(Lane, ExternalForcesMoveWithTheirParticles) {
 
   std::size_t found = 0;
   for (std::size_t l = 0; l < 2; ++l) {
-    const auto& s = lanes[l].store();
+    const auto& s = lanes[l].brick.store;
     for (std::int32_t i = 0; i < s.num_owned; ++i) {
       const auto id = s.id[static_cast<std::size_t>(i)];
       const bool is_given = std::ranges::find(given, id) != given.end();

@@ -199,7 +199,7 @@ void expect_history_saved() {
   one.seed(box.particles);
   for (int n = 0; n < 3; ++n) one.step();
   CheckpointShare share;
-  one[0].save(share);
+  barchan::save(one[0].brick, share);
 
   std::vector<CheckpointShare> parts;
   for (std::size_t l = 0; l + 1 < cuts.size(); ++l)
@@ -223,10 +223,10 @@ TEST(SecondLaw, StoresItsOwnEnergy) {
   Lanes<2> lanes(box.world, {0, 12});
   lanes.seed(box.particles);
   for (int n = 0; n < 3; ++n) lanes.step();
-  const double mine = lanes[0].measure(Vec3::Zero()).elastic.value();
+  const double mine = barchan::measure(lanes[0].brick, Vec3::Zero()).elastic.value();
   box.world.laws = LawTable(table_of(2));
 
-  const double linear = lanes[0].measure(Vec3::Zero()).elastic.value();
+  const double linear = barchan::measure(lanes[0].brick, Vec3::Zero()).elastic.value();
 
   EXPECT_GT(mine, linear);
 }

@@ -37,13 +37,13 @@ IdPairs close_pairs(int dimension, const Domain& domain, const std::vector<Parti
 template <int Dim>
 void append(const Lane<Dim>& lane, const PairList& list, IdPairs& ids, ListedPairs* rows) {
   for (std::size_t k = 0; k < list.i.size(); ++k) {
-    if (list.i[k] == lane.store().waste()) continue;  // padding
-    const auto& id = lane.store().id;
+    if (list.i[k] == lane.brick.store.waste()) continue;  // padding
+    const auto& id = lane.brick.store.id;
     const auto [it, is_new] = ids.insert(std::minmax(id[static_cast<std::size_t>(list.i[k])],
                                                      id[static_cast<std::size_t>(list.j[k])]));
     EXPECT_TRUE(is_new) << "pair " << it->first << ", " << it->second << " comes twice";
     EXPECT_LT(list.i[k], list.j[k]);
-    EXPECT_TRUE(lane.store().is_owned(list.i[k]));
+    EXPECT_TRUE(lane.brick.store.is_owned(list.i[k]));
     if (rows != nullptr) rows->emplace_back(list.i[k], list.j[k]);
   }
 }
@@ -95,7 +95,7 @@ void expect_all_found() {
       lanes.seed(particles);
 
       IdPairs found;
-      append(lanes[0], lanes[0].pairs(), found,
+      append(lanes[0], lanes[0].brick.pairs, found,
              &in_order[kind == ContactSearchKind::Cells ? 0 : 1]);
 
       ASSERT_EQ(found, expected) << "seed " << seed;
@@ -128,10 +128,10 @@ void expect_found_across_cuts(bool is_periodic) {
 
     IdPairs found;
     for (std::size_t l = 0; l < lanes.size(); ++l) {
-      append(lanes[l], lanes[l].pairs(), found, nullptr);
+      append(lanes[l], lanes[l].brick.pairs, found, nullptr);
       IdPairs once_more;  // the other side of a cut finds the same pairs again
-      append(lanes[l], lanes[l].band(Side::Left).across, once_more, nullptr);
-      append(lanes[l], lanes[l].band(Side::Right).across, once_more, nullptr);
+      append(lanes[l], lanes[l].brick.band(Side::Left).across, once_more, nullptr);
+      append(lanes[l], lanes[l].brick.band(Side::Right).across, once_more, nullptr);
       found.insert(once_more.begin(), once_more.end());
     }
 
@@ -159,7 +159,7 @@ TEST(ContactSearch, GivesBondedPairsTheNullLaw) {
   Lanes<2> lanes(world, {0, world.grid.num_slabs()});
   lanes.seed(particles, std::vector<BondData>{{1, 2, 0}});
 
-  const PairList& list = lanes[0].pairs();
+  const PairList& list = lanes[0].brick.pairs;
 
   ASSERT_EQ(list.size(), kBatch);
   EXPECT_EQ(list.code[0], LawTable::kBonded);

@@ -1,4 +1,4 @@
-#include <barchan/core/brick/lane_messages.hpp>
+#include <barchan/core/brick/messages.hpp>
 
 #include <gtest/gtest.h>
 

@@ -1,15 +1,8 @@
+#include <barchan/core/brick/packing.hpp>
+
 #include <algorithm>
+#include <array>
 #include <cmath>
-
-#include <barchan/core/brick/lane.hpp>
-
-// Where many candidates do not touch, a block works only on those that touch or soon may. A narrow
-// phase finds them, and packs their pairs, laws and histories to the front of the block. The packed
-// pairs serve until particles may have moved far enough for another pair to touch. A pair that
-// parts meanwhile has no force and loses its history, as it would in the whole list.
-//
-//   candidates   | a b c d e f g h | …        histories, unpacked   | a – c – – f g – |
-//   mask         | 1 0 1 0 0 1 1 0 |          histories, packed     | a c f g | …
 
 namespace barchan {
 namespace {
@@ -56,27 +49,13 @@ struct BlockHistory {
 };
 
 bool has_bit(const std::uint8_t* masks, std::int64_t k) {
-  return (masks[k / 8] >> (k % 8) & 1) != 0;
-}
-
-void unpack(PairList& list, PairBlock& block) {
-  if (!block.is_packed) return;
-  double* histories = list.history_of_block(block.begin);
-  const std::uint8_t* known = list.mask.data() + block.begin / kBatch;
-  std::int64_t a = block.num_packed;
-  for (std::int64_t k = block.end - block.begin - 1; k >= 0; --k) {
-    if (has_bit(known, k))
-      copy_history(list.history_length, histories, --a, histories, k);
-    else
-      clear_history(list.history_length, histories, k);
-  }
-  block.is_packed = false;
+  return (masks[k / kBatch] >> (k % kBatch) & 1) != 0;
 }
 
 // Nobody can foretell which lane of which batch is set, so nothing here branches on it.
 template <class Length>
-void pack_block(Length length, PairList& list, PairBlock& block, const std::uint8_t* masks,
-                std::int32_t waste) {
+void pack(Length length, PairList& list, PairBlock& block, const std::uint8_t* masks,
+          std::int32_t waste) {
   std::uint8_t* known = list.mask.data() + block.begin / kBatch;
   double* histories = list.history_of_block(block.begin);
   const std::int64_t size = block.end - block.begin;
@@ -117,53 +96,39 @@ void pack_block(Length length, PairList& list, PairBlock& block, const std::uint
 // With n steps between two narrow phases, the costs go with n·travel/skin and 1/n, so the best
 // margin n·travel is about sqrt(skin·travel), where travel is that of one step.
 template <int Dim>
-double Lane<Dim>::packing_margin() const {
-  return std::sqrt(world_->skin * step_travel_);
-}
-
-template <int Dim>
-PairJob Lane<Dim>::block_job(PairList& list, PairBlock& block, double travel) {
-  PairJob pairs = job(list);
-  pairs.begin = block.begin;
-  pairs.end = block.end;
-  if (packs()) pick_touching(list, block, pairs, travel);
-  return pairs;
-}
-
-template <int Dim>
-void Lane<Dim>::pick_touching(PairList& list, PairBlock& block, PairJob& pairs, double travel) {
+void pick_touching(const Brick<Dim>& brick, PairList& list, PairBlock& block, double travel,
+                   PairJob& job) {
   if (!block.is_packed || travel > block.packed_until) {
     std::array<std::uint8_t, kBlockPairs / kBatch> masks;
-    const double margin = packing_margin();
-    world_->kernels.narrow(pairs, margin, masks.data());
-    pack(list, block, masks.data());
+    const double margin = std::sqrt(brick.world->skin * brick.step_travel);
+    brick.world->kernels.narrow(job, margin, masks.data());
+    with_length<Dim>(list.history_length, [&](auto length) {
+      pack(length, list, block, masks.data(), brick.store.waste());
+    });
     // Both of a pair travel; a little less, for the rounding of positions and sums.
     block.packed_until = travel + 0.499 * margin;
   }
-  pairs.i = list.packed_i.data();
-  pairs.j = list.packed_j.data();
-  pairs.code = list.packed_code.data();
-  pairs.end = block.begin + (block.num_packed + kBatch - 1) / kBatch * kBatch;
+  job.i = list.packed_i.data();
+  job.j = list.packed_j.data();
+  job.code = list.packed_code.data();
+  job.end = block.begin + (block.num_packed + kBatch - 1) / kBatch * kBatch;
 }
 
-template <int Dim>
-void Lane<Dim>::pack(PairList& list, PairBlock& block, const std::uint8_t* masks) {
-  with_length<Dim>(list.history_length,
-                   [&](auto length) { pack_block(length, list, block, masks, store_.waste()); });
+void unpack(PairList& list, PairBlock& block) {
+  if (!block.is_packed) return;
+  double* histories = list.history_of_block(block.begin);
+  const std::uint8_t* known = list.mask.data() + block.begin / kBatch;
+  std::int64_t a = block.num_packed;
+  for (std::int64_t k = block.end - block.begin - 1; k >= 0; --k) {
+    if (has_bit(known, k))
+      copy_history(list.history_length, histories, --a, histories, k);
+    else
+      clear_history(list.history_length, histories, k);
+  }
+  block.is_packed = false;
 }
 
-template <int Dim>
-void Lane<Dim>::unpack_history() {
-  for (Block& block : blocks_) unpack(pairs_, block);
-  for (const Side side : kSides) unpack_history_across(side);
-}
-
-template <int Dim>
-void Lane<Dim>::unpack_history_across(Side side) {
-  for (PairBlock& block : band(side).blocks) unpack(band(side).across, block);
-}
-
-template class Lane<2>;
-template class Lane<3>;
+template void pick_touching(const Brick<2>&, PairList&, PairBlock&, double, PairJob&);
+template void pick_touching(const Brick<3>&, PairList&, PairBlock&, double, PairJob&);
 
 }  // namespace barchan

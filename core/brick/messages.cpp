@@ -1,11 +1,11 @@
-#include <barchan/core/brick/lane_messages.hpp>
+#include <barchan/core/brick/messages.hpp>
 
 #include <string>
 #include <utility>
 
 #include <barchan/core/base/bytes.hpp>
 #include <barchan/core/base/error.hpp>
-#include <barchan/core/brick/lane.hpp>
+#include <barchan/core/brick/world.hpp>
 
 namespace barchan {
 namespace {
@@ -82,7 +82,7 @@ Migration<Dim> decode_migration(std::span<const std::byte> message, const World<
   Migration<Dim> m;
   ByteReader in(message);
   m.particles = in.take_counted<RowRecord<Dim>>();
-  m.contacts.length = world.laws.law().template in<Dim>().history.length;
+  m.contacts.length = world.history_form().length;
   m.contacts.rows = in.take_counted<LooseContact>();
   m.contacts.numbers = in.take_counted<double>();
   m.walls = in.take_counted<WallRecord<Dim>>();

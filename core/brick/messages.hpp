@@ -12,7 +12,7 @@
 #include <barchan/core/particles/layout.hpp>
 #include <barchan/core/particles/row_record.hpp>
 
-// What lanes send each other at a rebuild, as bytes and back. Bytes that came in are held against
+// What bricks send each other at a rebuild, as bytes and back. Bytes that came in are held against
 // the receiver's world before anyone works on them: any bytes are safe, whoever sent them.
 
 namespace barchan {

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <barchan/core/base/side.hpp>
+#include <barchan/core/brick/passage.hpp>
+#include <barchan/core/brick/world.hpp>
+#include <barchan/core/links/bonds.hpp>
+#include <barchan/core/links/walls.hpp>
+#include <barchan/core/particles/particle_store.hpp>
+#include <barchan/core/search/band.hpp>
+#include <barchan/core/search/pair_list.hpp>
+
+namespace barchan {
+
+/// Pairs that are worked on in one go, and the rows that are complete after them.
+struct RowBlock : PairBlock {
+  std::array<Rows, 2> to_come;  ///< rows to ask for (prefetch.hpp)
+  std::int32_t final_row = 0;   ///< rows before this one are complete after the block
+  bool has_extras = false;      ///< bonds, walls or external forces among them
+};
+
+/// What one thread works on: slabs [slab_begin, slab_end) of the grid with their particles, what is
+/// between these, and copies of the slabs beside them.
+///
+///               slab_begin                       slab_end
+///      ghosts  |  band  |       interior        |  band  |  ghosts
+///              |<------------ owned ------------------->|
+///
+/// Plain data. What works on it stands beside it: Rebuild, Lists and Step (lane.hpp), and functions
+/// over bricks that they do not change: measure.hpp, diagnose.hpp, checkpoint.hpp.
+template <int Dim>
+struct Brick {
+  World<Dim>* world = nullptr;
+  int slab_begin = 0, slab_end = 0;
+
+  // particles
+  ParticleStore<Dim> store;
+  CellIndex cells;  ///< of owned rows
+
+  // candidates
+  PairList pairs;                       ///< of two owned particles
+  std::vector<std::int64_t> row_begin;  ///< of every owned row its first place in `pairs`
+  std::vector<RowBlock> blocks;         ///< of `pairs`
+  std::vector<int> chunks{0};           ///< first block of each chunk, and the end
+  std::array<Band, 2> bands;            ///< what is across the cuts, left and right
+  bool prefetches = false;
+  double skin = 0.0;    ///< that the lists have [m]
+  double travel = 0.0;  ///< bound of how far owned rows have come since the lists were made [m]
+  double outrun = 0.0;  ///< of the last step with the lists before these, see outrun_share
+
+  // links
+  BondSet<Dim> bonds;
+  BondedPairs bonded;
+  WallContacts<Dim> walls;
+  std::vector<WallSums> wall_sums;  ///< of all walls the work since the start
+
+  // the last step
+  RowSpeeds speeds;          ///< of the owned rows
+  double step_travel = 0.0;  ///< bound of how far owned rows moved [m]
+  bool is_fast = false;      ///< a row moved farther than World::most_travel(), or is not finite
+  bool has_quick = false;    ///< an owned row moved farther than World::quick_travel
+  Passage passage;  ///< two that passed each other in the step before the last one; of several the
+                    ///< first
+
+  explicit Brick(World<Dim>& of) : world(&of) {}
+  Band& band(Side side) { return bands[index_of(side)]; }
+  [[nodiscard]] const Band& band(Side side) const { return bands[index_of(side)]; }
+  [[nodiscard]] int num_chunks() const { return static_cast<int>(chunks.size()) - 1; }
+  [[nodiscard]] std::int64_t num_pairs() const {
+    std::int64_t n = pairs.size();
+    for (const Band& band : bands) n += band.exists ? band.across.size() : 0;
+    return n;
+  }
+  /// Of both, so that every bond and every pair across a cut counts once: on the cut's right.
+  [[nodiscard]] bool counts_bond(std::int32_t bond) const {
+    return !bonds.is_broken(bond) &&
+           std::max(bonds.end_a(bond), bonds.end_b(bond)) < store.ghost_begin(Side::Right);
+  }
+  /// Calls f(list, block) for the pairs that count here, block by block.
+  template <class F>
+  void for_each_counted(F&& f) const {
+    for (const RowBlock& block : blocks) f(pairs, block);
+    if (!band(Side::Left).exists) return;
+    for (const PairBlock& block : band(Side::Left).blocks) f(band(Side::Left).across, block);
+  }
+};
+
+}  // namespace barchan

@@ -1,0 +1,174 @@
+#include <barchan/core/brick/measure.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+#include <barchan/core/model/digest.hpp>
+
+namespace barchan {
+
+void Measures::add(const Measures& other) {
+  kinetic.add(other.kinetic);
+  elastic.add(other.elastic);
+  gravitational.add(other.gravitational);
+  for (int c = 0; c < 3; ++c) momentum[c].add(other.momentum[c]);
+  contacts += other.contacts;
+  bonds += other.bonds;
+  broken_bonds += other.broken_bonds;
+  max_overlap = std::max(max_overlap, other.max_overlap);
+  max_overlap_share = std::max(max_overlap_share, other.max_overlap_share);
+  max_speed = std::max(max_speed, other.max_speed);
+  max_inverse_mass = std::max(max_inverse_mass, other.max_inverse_mass);
+}
+
+namespace {
+
+template <int Dim>
+void measure_motion(const ParticleStore<Dim>& store, const Vec3& gravity, Measures& m) {
+  for (std::int32_t i = 0; i < store.num_owned; ++i) {
+    const double im = store.inverse_mass(i);
+    if (im == 0.0) continue;
+    const double mass = 1.0 / im;
+    double v2 = 0.0, u2 = 0.0, height = 0.0;
+    for (int c = 0; c < Dim; ++c) {
+      v2 += store.v(i)[c] * store.v(i)[c];
+      height -= gravity[c] * store.x(i)[c];
+      m.momentum[c].add(mass * store.v(i)[c]);
+    }
+    for (int c = 0; c < kSpins<Dim>; ++c) u2 += store.u(i)[c] * store.u(i)[c];
+    m.kinetic.add(0.5 * mass * (v2 + u2 / Layout<Dim>::kSpinGain));
+    m.gravitational.add(mass * height);
+    m.max_speed = std::max(m.max_speed, std::sqrt(v2));
+    m.max_inverse_mass = std::max(m.max_inverse_mass, im);
+  }
+}
+
+template <int Dim>
+void measure_pairs(const Brick<Dim>& brick, const PairList& list, const PairBlock& block,
+                   Measures& m) {
+  const ParticleStore<Dim>& store = brick.store;
+  const PeriodicBox& box = brick.world->grid.box();
+  const LawTable& laws = brick.world->laws;
+  const ContactLawIn<Dim>& law = laws.law().template in<Dim>();
+  block.for_each_candidate(list, [&](std::size_t k, const double* numbers) {
+    if (list.code[k] == LawTable::kBonded) return;
+    const std::int32_t i = list.i[k], j = list.j[k];
+    const double d2 = distance2<Dim>(box, store.x(i), store.x(j));
+    const double reach = store.radius(i) + store.radius(j);
+    if (d2 >= reach * reach) return;
+    const double overlap = reach - std::sqrt(d2);
+    double history[kMostHistory];
+    for (int c = 0; c < law.history.length; ++c) history[c] = numbers[c * kBatch];
+    m.elastic.add(law.energy(laws.row(list.code[k]), overlap, history));
+    m.max_overlap = std::max(m.max_overlap, overlap);
+    m.max_overlap_share =
+        std::max(m.max_overlap_share, overlap / std::min(store.radius(i), store.radius(j)));
+    ++m.contacts;
+  });
+}
+
+template <int Dim>
+void measure_wall_contacts(const Brick<Dim>& brick, Measures& m) {
+  const ParticleStore<Dim>& store = brick.store;
+  const World<Dim>& world = *brick.world;
+  const auto walls = brick.walls.list();
+  for (std::size_t k = 0; k < walls.size(); ++k) {
+    const WallContact<Dim>& c = walls[k];
+    const auto w = static_cast<std::size_t>(c.wall);
+    const double overlap =
+        store.radius(c.row) -
+        world.wall_shapes[w].foot(world.walls[w].point, c.image, store.x(c.row)).distance;
+    if (overlap <= 0.0 || !brick.walls.is_felt(store, world.wall_view(), k)) continue;
+    const double* row = world.laws.row(
+        world.laws.code(world.wall_specs[w].material, store.type[static_cast<std::size_t>(c.row)]));
+    m.elastic.add(world.laws.law().template in<Dim>().energy(row, overlap, c.history));
+    m.max_overlap = std::max(m.max_overlap, overlap);
+    m.max_overlap_share = std::max(m.max_overlap_share, overlap / store.radius(c.row));
+  }
+}
+
+}  // namespace
+
+template <int Dim>
+Measures measure(const Brick<Dim>& brick, const Vec3& gravity) {
+  Measures m;
+  measure_motion(brick.store, gravity, m);
+  brick.for_each_counted(
+      [&](const PairList& list, const PairBlock& block) { measure_pairs(brick, list, block, m); });
+  measure_wall_contacts(brick, m);
+  for (std::int32_t b = 0; b < static_cast<std::int32_t>(brick.bonds.bonds().size()); ++b) {
+    if (!brick.counts_bond(b)) continue;
+    m.elastic.add(
+        brick.bonds.energy(b, brick.store, brick.world->bond_laws, brick.world->grid.box()));
+    ++m.bonds;
+  }
+  m.broken_bonds = brick.bonds.num_broken();
+  return m;
+}
+
+template <int Dim>
+std::vector<WallSums> measure_walls(const Brick<Dim>& brick) {
+  const World<Dim>& world = *brick.world;
+  std::vector<WallSums> sums(world.walls.size());
+  for (std::size_t w = 0; w < brick.wall_sums.size(); ++w) sums[w].work = brick.wall_sums[w].work;
+  brick.walls.measure(brick.store, {world.wall_view(), &world.laws, world.dt}, sums);
+  return sums;
+}
+
+template <int Dim>
+Travel travel(const Brick<Dim>& brick) {
+  const ParticleStore<Dim>& store = brick.store;
+  const PeriodicBox& box = brick.world->grid.box();
+  Travel t;
+  if (brick.outrun > 1.0) t.distance2 = brick.outrun * 0.25 * brick.skin * brick.skin;
+  for (std::int32_t i = 0; i < store.num_owned; ++i) {
+    const double *x = store.x(i), *v = store.v(i);
+    const double* from = store.reference.data() + std::size_t{Dim} * static_cast<std::size_t>(i);
+    const double d2 = distance2<Dim>(box, from, x);
+    double v2 = 0.0;
+    for (int c = 0; c < Dim; ++c) v2 += v[c] * v[c];
+    // Written so that NaN wins.
+    if (!(d2 <= t.distance2)) t.distance2 = d2;
+    if (!(v2 <= t.speed2)) t.speed2 = v2;
+  }
+  return t;
+}
+
+template <int Dim>
+double distance2_of_last_step(const Brick<Dim>& brick) {
+  const ParticleStore<Dim>& store = brick.store;
+  double most = 0.0;
+  for (std::int32_t i = 0; i < store.num_owned; ++i) {
+    const double* from = store.reference.data() + std::size_t{Dim} * static_cast<std::size_t>(i);
+    double before[Dim];
+    for (int c = 0; c < Dim; ++c) before[c] = store.x(i)[c] - brick.world->dt * store.v(i)[c];
+    most = std::max(most, distance2<Dim>(brick.world->grid.box(), from, before));
+  }
+  return most;
+}
+
+template <int Dim>
+std::uint64_t digest(const Brick<Dim>& brick) {
+  const ParticleStore<Dim>& store = brick.store;
+  std::uint64_t sum = 0;
+  for (std::int32_t i = 0; i < store.num_owned; ++i) {
+    double omega[3];
+    for (int c = 0; c < kSpins<Dim>; ++c) omega[c] = store.u(i)[c] / store.radius(i);
+    sum += particle_digest(store.id[static_cast<std::size_t>(i)], {store.x(i), std::size_t{Dim}},
+                           {store.v(i), std::size_t{Dim}}, {omega, std::size_t{kSpins<Dim>}});
+  }
+  return sum;
+}
+
+template Measures measure(const Brick<2>&, const Vec3&);
+template Measures measure(const Brick<3>&, const Vec3&);
+template std::vector<WallSums> measure_walls(const Brick<2>&);
+template std::vector<WallSums> measure_walls(const Brick<3>&);
+template Travel travel(const Brick<2>&);
+template Travel travel(const Brick<3>&);
+template double distance2_of_last_step(const Brick<2>&);
+template double distance2_of_last_step(const Brick<3>&);
+template std::uint64_t digest(const Brick<2>&);
+template std::uint64_t digest(const Brick<3>&);
+
+}  // namespace barchan

@@ -1,0 +1,216 @@
+#include <barchan/core/brick/step.hpp>
+
+#include <cmath>
+#include <utility>
+
+#include <barchan/core/brick/halo.hpp>
+#include <barchan/core/brick/packing.hpp>
+#include <barchan/core/brick/prefetch.hpp>
+#include <barchan/core/simd/denormals.hpp>
+
+namespace barchan {
+namespace {
+
+/// Steps whose work on walls a sum can hold: a million contacts each.
+constexpr std::int64_t kCarryEvery = 512;
+
+/// Of a component of velocity, beyond which step_travel() is looked at [m/s].
+template <int Dim>
+double quick_speed(const World<Dim>& world) {
+  return world.quick_travel / (std::sqrt(double{Dim}) * world.dt);
+}
+
+template <int Dim>
+void judge_speeds(Brick<Dim>& brick, Rows rows) {
+  const World<Dim>& world = *brick.world;
+  const double travel = farthest_travel(brick.store, world.dt, rows);
+  brick.is_fast = brick.is_fast || !(travel <= world.most_travel(brick.skin));
+  brick.has_quick = brick.has_quick || travel > world.quick_travel;
+}
+
+}  // namespace
+
+template <int Dim>
+PairJob Step<Dim>::job(PairList& list, PairBlock& block, double travel) {
+  ParticleStore<Dim>& store = brick_.store;
+  PairJob job;
+  job.motion = store.motion.data();
+  job.spin = store.spin.data();
+  job.force = store.force.data();
+  job.i = list.i.data();
+  job.j = list.j.data();
+  job.code = list.code.data();
+  job.history = list.history.data();
+  job.begin = block.begin;
+  job.end = block.end;
+  job.dt = spring_step(frame_);
+  job.box = brick_.world->grid.box();
+  job.laws = brick_.world->laws.view();
+  if (brick_.world->packs()) pick_touching(brick_, list, block, travel, job);
+  return job;
+}
+
+template <int Dim>
+void Step<Dim>::press_plates(const StepFrame& frame, std::span<WallSums> sums) {
+  const simd::DenormalsAreZero quiet;
+  brick_.walls.press(brick_.store, wall_frame(frame), sums);
+}
+
+template <int Dim>
+void Step<Dim>::begin(const StepFrame& frame) {
+  const simd::DenormalsAreZero quiet;
+  const World<Dim>& world = *brick_.world;
+  frame_ = frame;
+  wraps_ = world.grid.box().any() && (frame.step + 1) % kEventSteps == 0;
+  brick_.step_travel = brick_.speeds.top * world.dt;
+  brick_.travel += brick_.step_travel;
+  brick_.speeds = {};
+  looks_ = std::exchange(brick_.has_quick, false) && frame_.has_moved(world.dt);
+  if (world.search == ContactSearchKind::AllPairs) lists_.search_owned_again();
+  if (looks_) PassageWatch<Dim>(world, brick_.store, brick_.passage).look_at(brick_.pairs);
+  rows_done_ = brick_.band(Side::Left).rows.end;
+  brick_.wall_sums.resize(world.walls.size());
+  if (++num_steps_ % kCarryEvery == 0) {
+    for (WallSums& sums : brick_.wall_sums) sums.work.carry();
+  }
+  if (!brick_.bonds.empty()) compute_bonds(BondSet<Dim>::Owned);
+}
+
+template <int Dim>
+void Step<Dim>::run_chunk(int chunk) {
+  const simd::DenormalsAreZero quiet;
+  const auto c = static_cast<std::size_t>(chunk);
+  for (int b = brick_.chunks[c]; b < brick_.chunks[c + 1]; ++b)
+    run_block(brick_.blocks[static_cast<std::size_t>(b)]);
+}
+
+template <int Dim>
+void Step<Dim>::run_block(RowBlock& block) {
+  const PairJob pairs = job(brick_.pairs, block, brick_.travel);
+  if (brick_.prefetches)
+    run_with_prefetch(brick_, block, pairs);
+  else
+    brick_.world->kernels.pairs(pairs);
+  if (block.final_row <= rows_done_) return;
+  finish_rows({rows_done_, block.final_row}, block.has_extras);
+  rows_done_ = block.final_row;
+}
+
+/// Into the extra forces of these rows: bonds, walls, callers.
+template <int Dim>
+void Step<Dim>::add_extras(Rows rows) {
+  ParticleStore<Dim>& store = brick_.store;
+  if (frame_.has_moved(brick_.world->dt))
+    PassageWatch<Dim>(*brick_.world, store, brick_.passage).look_at(brick_.walls.list(), rows);
+  store.start_extra(rows.begin, rows.end);
+  brick_.bonds.add_to_rows(store, rows.begin, rows.end);
+  brick_.walls.add_to_rows(store, wall_frame(frame_), brick_.wall_sums, rows.begin, rows.end);
+  if (store.external.empty()) return;
+  constexpr auto kForce = std::size_t{Layout<Dim>::kForce};
+  const auto from = static_cast<std::size_t>(rows.begin) * kForce,
+             to = static_cast<std::size_t>(rows.end) * kForce;
+  for (std::size_t c = from; c < to; ++c) store.extra[c - from] += store.external[c];
+}
+
+template <int Dim>
+void Step<Dim>::finish_rows(Rows rows, bool has_extras) {
+  const World<Dim>& world = *brick_.world;
+  ParticleStore<Dim>& store = brick_.store;
+  const bool has_more = has_extras || !store.external.empty();
+  if (has_more) add_extras(rows);
+  const RowJob job{store.motion.data(),
+                   store.spin.data(),
+                   store.force.data(),
+                   rows.begin,
+                   rows.end,
+                   frame_.kick,
+                   world.dt,
+                   {frame_.gravity[0], frame_.gravity[1], frame_.gravity[2]},
+                   frame_.local_damping,
+                   quick_speed(world),
+                   world.grain.rounder(),
+                   has_more ? store.extra.data() : nullptr};
+  const RowKernel advance =
+      frame_.local_damping != 0.0 ? world.kernels.rows_damped : world.kernels.rows;
+  const RowSpeeds speeds = advance(job);
+  brick_.speeds.add(speeds);
+  if (speeds.is_beyond) judge_speeds(brick_, rows);
+  if (wraps_) wrap_rows(rows);
+}
+
+/// At fixed steps, for what a position loses around the end of the box is part of the state.
+template <int Dim>
+void Step<Dim>::wrap_rows(Rows rows) {
+  const World<Dim>& world = *brick_.world;
+  brick_.walls.foresee_wrap(brick_.store, world.grid, world.wall_shapes, rows);
+  for (std::int32_t i = rows.begin; i < rows.end; ++i) world.grid.wrap(brick_.store.x(i));
+}
+
+template <int Dim>
+void Step<Dim>::finish_band(Side side) {
+  const simd::DenormalsAreZero quiet;
+  const World<Dim>& world = *brick_.world;
+  Band& band = brick_.band(side);
+  if (world.search == ContactSearchKind::AllPairs) lists_.search_across_again(side);
+  if (looks_ || (band.has_quick && frame_.has_moved(world.dt)))
+    PassageWatch<Dim>(world, brick_.store, brick_.passage).look_at(band.across);
+  // Bonds come before contacts here too, as in begin: a pair whose bond breaks is in contact in the
+  // same step.
+  if (!brick_.bonds.empty())
+    compute_bonds(side == Side::Left ? BondSet<Dim>::Left : BondSet<Dim>::Right);
+  for (PairBlock& block : band.blocks)
+    world.kernels.pairs(job(band.across, block, 0.5 * (brick_.travel + band.travel)));
+  finish_rows(band.rows, true);
+}
+
+template <int Dim>
+void Step<Dim>::finish_right_band(std::span<const double> results) {
+  const simd::DenormalsAreZero quiet;
+  add_results(brick_, results);
+  finish_rows(brick_.band(Side::Right).rows, true);
+}
+
+template <int Dim>
+void Step<Dim>::compute_bonds(typename BondSet<Dim>::Group group) {
+  const World<Dim>& world = *brick_.world;
+  const auto broken = brick_.bonds.compute(group, brick_.store, world.bond_laws, world.grid.box(),
+                                           spring_step(frame_));
+  if (broken.empty()) return;
+  // Laws change. Bonds across a cut are pairs across it.
+  if (group == BondSet<Dim>::Owned) {
+    for (PairBlock& block : brick_.blocks) unpack(brick_.pairs, block);
+  } else {
+    Band& band = brick_.band(group == BondSet<Dim>::Left ? Side::Left : Side::Right);
+    for (PairBlock& block : band.blocks) unpack(band.across, block);
+  }
+  for (const std::int32_t bond : broken) unbind(bond);
+  lists_.list_bonded();
+}
+
+template <int Dim>
+void Step<Dim>::unbind(std::int32_t bond) {
+  const std::int32_t a = brick_.bonds.end_a(bond), b = brick_.bonds.end_b(bond);
+  const PairPlace at = place_of(brick_, a, b);
+  if (at.list == nullptr) return;  // too far apart to be candidates
+  const auto& type = brick_.store.type;
+  at.list->code[static_cast<std::size_t>(at.k)] =
+      brick_.world->laws.code(type[static_cast<std::size_t>(a)], type[static_cast<std::size_t>(b)]);
+}
+
+template <int Dim>
+void find_quick(Brick<Dim>& brick) {
+  brick.has_quick = false;
+  judge_speeds(brick, {0, brick.store.num_owned});
+  for (const Side side : kSides) {
+    brick.band(side).has_quick =
+        farthest_travel(brick.store, brick.world->dt, brick.store.ghosts(side)) >
+        brick.world->quick_travel;
+  }
+}
+
+template class Step<2>;
+template class Step<3>;
+template void find_quick(Brick<2>&);
+template void find_quick(Brick<3>&);
+
+}  // namespace barchan
