@@ -179,6 +179,26 @@ void print_step(const Model& model, const std::vector<StepLimit>& limits) {
   }
 }
 
+/// What the limits of contacts that stiffen with overlap rest on, and what is custom beside them.
+void print_impact(const LoadedDeck& loaded) {
+  const Model& model = loaded.deck.model;
+  if (const auto impact = reference_impact(model, loaded.particles)) {
+    std::printf(
+        "  Contacts are as stiff there as an impact at %.3g m/s (%s) makes them: overlap %s of the "
+        "smaller radius; the shortest takes %.3g s, %.0f steps.\n",
+        impact->speed,
+        model.contacts.reference_speed ? "contact.reference_speed" : "of the start and of falls",
+        percent(impact->overlap).c_str(), impact->duration, impact->duration / model.time.step);
+  }
+  const auto waves = wave_times(model, loaded.particles);
+  if (waves.empty()) return;
+  const double share = model.time.step / waves.front().step;
+  std::printf("  %sRayleigh time %.3g s (%s): the step is %.2g of it%s.\n",
+              share > kAdvisedShare ? "Warning: " : "", waves.front().step,
+              waves.front().what.c_str(), share,
+              share > kAdvisedShare ? "; a fifth is the custom" : "");
+}
+
 void print_warnings(const std::vector<std::string>& warnings) {
   for (const std::string& what : warnings) std::printf("  Warning: %s.\n", what.c_str());
 }
@@ -199,6 +219,7 @@ void check_deck(const CheckArguments& arguments) {
   print_warnings(walls_to_come_in_particles(model, loaded.particles));
   print_stages(model);
   print_step(model, limits);
+  print_impact(loaded);
   print_warnings(speed_warnings(model, loaded.particles));
   print_warnings(precision_warnings(model, loaded.particles));
   print_strips(loaded, arguments.ranks);

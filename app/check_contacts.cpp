@@ -47,16 +47,15 @@ struct Restitution {
 };
 
 template <class Law>
-Restitution restitution_of(const ContactConstants& pair, bool no_tension, const InverseMasses& a,
-                           const InverseMasses& b) {
+Restitution restitution_of(const ContactConstants& pair, const ContactRules& rules,
+                           const InverseMasses& a, const InverseMasses& b) {
   const double heavy = std::min(a.low + b.of_heaviest, a.of_heaviest + b.low);
-  const double one = Law::restitution(pair, 1.0 / heavy, no_tension),
-               other = Law::restitution(pair, 1.0 / (a.high + b.high), no_tension);
+  const double one = Law::restitution(pair, 1.0 / heavy, rules),
+               other = Law::restitution(pair, 1.0 / (a.high + b.high), rules);
   return {std::min(one, other), std::max(one, other)};
 }
 
-template <class Pair>
-std::string restitution_text(const Pair& pair, const Restitution& e) {
+std::string restitution_text(const ContactConstants& pair, const Restitution& e) {
   const std::string number = e.high - e.low < 5e-4 ? fmt::format("{:.4g}", e.high)
                                                    : fmt::format("{:.3g} … {:.3g}", e.low, e.high);
   if (pair.is_mixed) return number + ", mixed";
@@ -77,21 +76,27 @@ std::vector<std::vector<std::string>> rows_of(const LoadedDeck& loaded, std::str
     for (int b = a; b < n; ++b) {
       const ContactConstants& pair = model.contacts.at(a, b);
       const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
-      if (Law::stiffness(pair) == 0.0) continue;  // a pair that cannot meet
+      if (!Law::acts(pair)) continue;  // a pair that cannot meet
       const std::string name = model.materials[i].name + "–" + model.materials[j].name;
       const bool can_meet =
           std::max(masses[i].low, masses[j].low) < kUnused && masses[i].high + masses[j].high > 0.0;
-      const auto e =
-          can_meet ? restitution_of<Law>(pair, model.contacts.no_tension, masses[i], masses[j])
-                   : Restitution{};
+      const auto e = can_meet
+                         ? restitution_of<Law>(pair, model.contacts.rules(), masses[i], masses[j])
+                         : Restitution{};
       if (e.high == 1.0) lossless += (lossless.empty() ? "" : ", ") + name;
       rows.push_back({name});
       for (std::string& text : Law::texts(pair)) rows.back().push_back(std::move(text));
-      rows.back().push_back(
-          can_meet ? restitution_text(static_cast<const typename Law::Pair&>(pair), e) : "–");
+      rows.back().push_back(can_meet ? restitution_text(pair, e) : "–");
     }
   }
   return rows;
+}
+
+std::string describe(const ContactTable& contacts) {
+  if (contacts.law == 0) return "linear springs and dashpots, friction";
+  return fmt::format("Hertz, {}, friction", contacts.tangential == Tangential::Mindlin
+                                                ? "Mindlin by increments of force"
+                                                : "Mindlin by displacement");
 }
 
 }  // namespace
@@ -101,8 +106,8 @@ void print_contacts(const LoadedDeck& loaded) {
   std::string lossless;
   const auto rows = with_law(
       contacts.law, [&]<class Law>(Law /*law*/) { return rows_of<Law>(loaded, lossless); });
-  std::printf("Contacts:%s\n%s", contacts.no_tension ? "" : " (normal forces may pull)",
-              table(rows).c_str());
+  std::printf("Contacts: %s%s\n%s", describe(contacts).c_str(),
+              contacts.no_tension ? "" : "; normal forces may pull", table(rows).c_str());
   if (!lossless.empty())
     std::printf("  Warning: restitution 1, head-on collisions lose no energy: %s\n",
                 lossless.c_str());

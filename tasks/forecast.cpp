@@ -18,14 +18,21 @@ constexpr double kOneDigit = 10.0, kThreeDigits = 1000.0;
 /// An overlap of interest is at least this share of a radius.
 constexpr double kLeastOverlap = 1e-3;
 
-/// Largest stiffness that a material meets.
-double stiffness_of(const ContactTable& contacts, int type) {
-  double kn = 0.0;
-  with_law(contacts.law, [&]<class Law>(Law /*law*/) {
-    for (int other = 0; other < contacts.num_materials; ++other)
-      kn = std::max(kn, Law::stiffness(contacts.at(type, other)));
+/// Of a particle under its weight, or as it hits something heavy, where that overlaps least; 0
+/// without constants [m].
+double overlap_of(const Model& model, const ParticleData& p) {
+  const double m = mass_of(p, model.dimension), g = model.gravity.norm();
+  double least = kInfinite;
+  with_law(model.contacts.law, [&]<class Law>(Law /*law*/) {
+    for (int other = 0; other < model.contacts.num_materials; ++other) {
+      const ContactConstants& pair = model.contacts.at(p.type, other);
+      if (!Law::acts(pair)) continue;
+      least =
+          std::min(least, std::max(Law::pressed_overlap(pair, p.radius, m * g),
+                                   Law::struck_overlap(pair, {m, p.radius, p.velocity.norm()})));
+    }
   });
-  return kn;
+  return least < kInfinite ? least : 0.0;
 }
 
 /// How far a particle may fall before it leaves the domain [m]; infinite along a periodic axis, 0
@@ -187,10 +194,8 @@ Precision precision_of(const Model& model, const ParticleSet& set) {
   for (const ParticleData& p : set.particles) {
     found.radius = std::min(found.radius, p.radius);
     if (p.fixed) continue;
-    const double v = p.velocity.norm(), m = mass_of(p, model.dimension);
-    const double kn = stiffness_of(model.contacts, p.type);
-    speed = std::max({speed, v, std::sqrt(2.0 * g * p.radius)});
-    const double overlap = kn > 0.0 ? std::max(m * g / kn, v * std::sqrt(m / kn)) : 0.0;
+    speed = std::max({speed, p.velocity.norm(), std::sqrt(2.0 * g * p.radius)});
+    const double overlap = overlap_of(model, p);
     found.most_overlap = std::max(found.most_overlap, overlap);
     if (overlap > 0.0) found.least_overlap = std::min(found.least_overlap, overlap);
   }

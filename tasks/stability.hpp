@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -22,7 +23,8 @@ struct StepLimit {
 ///
 /// - "contact" and "damping": a pair of the lightest particles of these materials, without and with
 ///   the dashpot; "tangential": the same with kt, ct and the mass that sliding and rolling have
-///   together; "wall": a particle against a material of infinite mass. A particle in a packing
+///   together; "wall": a particle against a material of infinite mass. Where stiffness grows with
+///   overlap: as stiff as an impact at contact.reference_speed makes it. A particle in a packing
 ///   touches several others and is stiffer than a pair by up to 3 (disks) or 4 (spheres) in k and
 ///   c: hence kAdvisedShare.
 /// - "bond": every particle with all of its bonds, its partners moving against it, exact for a pair
@@ -32,6 +34,21 @@ struct StepLimit {
 /// @param particles  fixed ones count as infinitely heavy
 /// Pure. Same on every rank.
 std::vector<StepLimit> step_limits(const Model& model, const ParticleSet& particles);
+
+/// What the stable step takes for the hardest impact, where stiffness grows with overlap.
+struct ReferenceImpact {
+  double speed = 0.0;     ///< [m/s]
+  double overlap = 0.0;   ///< the largest share of a smaller radius
+  double duration = 0.0;  ///< of the shortest contact [s]
+};
+/// None where stiffness is the same at any overlap. Pure. Same on every rank.
+std::optional<ReferenceImpact> reference_impact(const Model& model, const ParticleSet& particles);
+
+/// Rayleigh times: how long a wave along the surface of a particle takes from pole to pole,
+/// material by material where moduli are known, shortest first. Advice, and no limit: a share
+/// kAdvisedShare of it is the custom. Source: Li, Xu & Thornton 2005,
+/// doi:10.1016/j.powtec.2005.09.002. Pure. Same on every rank.
+std::vector<StepLimit> wave_times(const Model& model, const ParticleSet& particles);
 
 /// Share of the limit up to which a packing of many contacts is safe and accurate.
 inline constexpr double kAdvisedShare = 0.2;

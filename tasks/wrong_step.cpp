@@ -42,7 +42,12 @@ template <int Dim>
           step, name(p.first), is_wall ? name_of_wall(run.model, p.wall) : name(p.second), p.travel,
           is_quick ? "more than the smaller radius," : "with a radius of", radius,
           is_quick ? "" : ", and their contact was too soft to stop them",
-          is_stiffer ? fmt::format("normal_stiffness = {:.2g}", 1.1 * stiffness) : "",
+          is_stiffer ? with_law(run.model.contacts.law,
+                                [&]<class Law>(Law /*law*/) {
+                                  return Law::stiffer(1.1 * stiffness,
+                                                      1.1 * stiffness / p.stiffness);
+                                })
+                     : "",
           is_stiffer && is_shorter ? " and " : "",
           is_shorter ? fmt::format("time.step = {:.2g}", 0.9 * remedy) : ""));
 }

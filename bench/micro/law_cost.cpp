@@ -56,14 +56,14 @@ double law_flops(int dim) {
   if (dim == 2) {
     Counted spring[1] = {{1e-3}};
     PairForce<Counting, 2> force;
-    const PairState<Counting, 2> pair{{0.9}, {0.1}, {1.0}, {0.1}, {2.0}, {0.3}, {2.0}};
+    const PairState<Counting, 2> pair{{0.9}, {0.1}, {1.0}, {0.1}, {2.0}, {0.3}, {2.0}, {2.0}};
     (void)LinearSpring::respond<Counting, LinearSpring::Rate>(constants(), pair, dt, spring, force);
     return Counted::count + kGathered2 + kScattered2;
   }
   Counted spring[3] = {{1e-3}, {0.0}, {0.0}};
   PairForce<Counting, 3> force;
   const PairState<Counting, 3> pair{{0.9}, {0.1}, {0.1}, {1.0}, {0.1}, {2.0},
-                                    {0.3}, {2.0}, {0.1}, {0.2}, {0.3}};
+                                    {0.3}, {2.0}, {0.1}, {0.2}, {0.3}, {2.0}};
   (void)LinearSpring::respond<Counting, LinearSpring::Rate>(constants(), pair, dt, spring, force);
   return Counted::count + kGathered3 + kScattered3;
 }

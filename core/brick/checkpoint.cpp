@@ -41,6 +41,7 @@ void restore_particles(const CheckpointShare& share, ParticleStore<Dim>& store) 
       std::copy_n(column.data() + static_cast<std::size_t>(row) * width, width,
                   field.of(store, row));
   });
+  for (std::int32_t row = 0; row < n; ++row) store.set_radius(row, store.radius(row));
 }
 
 /// Of squared distances and of distances: what touches, and a little more for rounding.

@@ -59,7 +59,9 @@ void measure_pairs(const Brick<Dim>& brick, const PairList& list, const PairBloc
     const double overlap = reach - std::sqrt(d2);
     double history[kMostHistory];
     for (int c = 0; c < law.history.length; ++c) history[c] = numbers[c * kBatch];
-    m.elastic.add(law.energy(laws.row(list.code[k]), overlap, history));
+    m.elastic.add(law.energy(laws.row(list.code[k]),
+                             {overlap, store.inverse_radius(i) + store.inverse_radius(j)},
+                             history));
     m.max_overlap = std::max(m.max_overlap, overlap);
     m.max_overlap_share =
         std::max(m.max_overlap_share, overlap / std::min(store.radius(i), store.radius(j)));
@@ -81,7 +83,8 @@ void measure_wall_contacts(const Brick<Dim>& brick, Measures& m) {
     if (overlap <= 0.0 || !brick.walls.is_felt(store, world.wall_view(), k)) continue;
     const double* row = world.laws.row(
         world.laws.code(world.wall_specs[w].material, store.type[static_cast<std::size_t>(c.row)]));
-    m.elastic.add(world.laws.law().template in<Dim>().energy(row, overlap, c.history));
+    m.elastic.add(world.laws.law().template in<Dim>().energy(
+        row, {overlap, store.inverse_radius(c.row)}, c.history));
     m.max_overlap = std::max(m.max_overlap, overlap);
     m.max_overlap_share = std::max(m.max_overlap_share, overlap / store.radius(c.row));
   }

@@ -94,8 +94,11 @@ Suspect suspect_of(const ParticleStore<Dim>& store, std::int32_t row) {
 }
 
 template <int Dim>
-double PassageWatch<Dim>::stiffness(std::uint8_t code) const {
-  return world_.laws.law().stiffness(world_.laws.row(code));
+double PassageWatch<Dim>::stiffness(std::uint8_t code, const Overlap& overlap) const {
+  constexpr double kNoHistory[kMostHistory] = {};
+  return 2.0 *
+         world_.laws.law().template in<Dim>().energy(world_.laws.row(code), overlap, kNoHistory) /
+         (overlap.depth * overlap.depth);
 }
 
 template <int Dim>
@@ -124,7 +127,8 @@ void PassageWatch<Dim>::look_at(const PairList& pairs) const {
     if (p.second.id < p.first.id) std::swap(p.first, p.second);
     p.travel = std::sqrt(s2);
     p.mass = 1.0 / (store_.inverse_mass(i) + store_.inverse_mass(j));
-    p.stiffness = stiffness(pairs.code[k]);
+    p.stiffness = stiffness(pairs.code[k],
+                            {least_radius, store_.inverse_radius(i) + store_.inverse_radius(j)});
     found_.add(p);
   }
 }
@@ -162,7 +166,8 @@ void PassageWatch<Dim>::look_at(std::span<const WallContact<Dim>> contacts, Rows
     const WallSpec& spec = world_.wall_specs[w];
     p.mass = 1.0 / (store_.inverse_mass(it->row) + (spec.is_loaded ? 1.0 / spec.mass : 0.0));
     p.stiffness =
-        stiffness(world_.laws.code(spec.material, store_.type[static_cast<std::size_t>(it->row)]));
+        stiffness(world_.laws.code(spec.material, store_.type[static_cast<std::size_t>(it->row)]),
+                  {radius, store_.inverse_radius(it->row)});
     found_.add(p);
   }
 }

@@ -39,7 +39,8 @@ struct Passage {
   std::int32_t wall = -1;  ///< its number
   double travel = 0.0;     ///< |s| [m]
   double mass = 0.0;       ///< of both together, 1/(1/m + 1/m) [kg]
-  double stiffness = 0.0;  ///< of their contact [N/m]
+  double stiffness = 0.0;  ///< of a spring that stores what their contact does, as the smaller
+                           ///< radius overlaps [N/m]
 
   [[nodiscard]] bool exists() const { return first.id != 0; }
   /// Keeps that with the lowest ids.
@@ -64,7 +65,7 @@ class PassageWatch {
   void look_at(std::span<const WallContact<Dim>> contacts, Rows rows) const;
 
  private:
-  [[nodiscard]] double stiffness(std::uint8_t code) const;
+  [[nodiscard]] double stiffness(std::uint8_t code, const Overlap& overlap) const;
 
   const World<Dim>& world_;
   const ParticleStore<Dim>& store_;

@@ -15,8 +15,8 @@ constexpr std::string_view kCohesion[] = {
     " cohes",  " adhes",   " capillar",      " surface energy", " surface tension",
     " liquid", " suction", " contact angle", " pull off",       " jkr",
     " dmt",    " van der", " bond number",   " work of"};
-constexpr std::string_view kElastic[] = {
-    " young", " poisson", " elastic mod", " shear modulus", " bulk modulus", " hertz", " mindlin"};
+constexpr std::string_view kElastic[] = {" elastic mod", " shear modulus", " bulk modulus"};
+constexpr std::string_view kPoisson[] = {" poisson"};
 constexpr std::string_view kLaws[] = {" contact law", " contact model", " law", " hysteresis",
                                       " walton"};
 constexpr std::string_view kHeat[] = {" temperature", " thermal", " heat", " specific heat",
@@ -35,7 +35,7 @@ constexpr std::string_view kCurved[] = {" cylind", " cone",   " curved", " mesh"
 constexpr std::string_view kTurning[] = {" omega", " angular", " rotat", " spin", " turn", " tilt"};
 constexpr std::string_view kShapes[] = {" shape",   " aspect",    " vertices", " clump",
                                         " mesh",    " stl",       " superq",   " polyh",
-                                        " polygon", " ellipsoid", " capsule",  " rigid"};
+                                        " polygon", " ellipsoid", " capsule",  " rigid bod"};
 constexpr std::string_view kServo[] = {" servo", " target stress", " stress control",
                                        " strain rate"};
 constexpr std::string_view kSheared[] = {" lees edwards", " shear rate", " sheared", " deform"};
@@ -55,12 +55,15 @@ constexpr Group kGroups[] = {
      {"cohesion is",
       "leave it out; a [[bond]] has tensile_strength and shear_strength, and breaks for good"}},
     {kElastic,
-     {"contact by elastic moduli (Hertz) is",
-      "give normal_stiffness and tangential_stiffness in N/m; young_modulus and stiffness_ratio "
-      "belong to a [[bond]]"}},
+     {"elasticity by any moduli but Young's modulus and Poisson's ratio is",
+      "give young_modulus and poisson_ratio to materials, with model = \"hertz\" in [contact]; a "
+      "[[bond]] has young_modulus and stiffness_ratio"}},
+    {kPoisson,
+     {"Poisson's ratio of a bond is", "give stiffness_ratio, normal over shear stiffness"},
+     "[[bond]]"},
     {kLaws,
-     {"any law of contact but a linear spring and dashpot with Coulomb friction is",
-      "leave it out"}},
+     {"any law of contact but linear springs and Hertz–Mindlin is",
+      "choose one of these by `model` in [contact]"}},
     {kHeat, {"heat is", "leave it out"}},
     {kViscous,
      {"viscosity is",

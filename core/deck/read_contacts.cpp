@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <barchan/core/deck/law_keys.hpp>
 #include <barchan/core/deck/readers.hpp>
 #include <barchan/core/model/validate.hpp>
 
@@ -13,55 +14,32 @@ namespace barchan::deck {
 namespace {
 
 struct Rules {
-  bool is_mixed = true;    ///< pairs without a [[pair]] take the constants of their materials
-  bool no_tension = true;  ///< the clamp of the run
+  bool is_mixed = true;  ///< pairs without a [[pair]] take the constants of their materials
+  int law = 0;           ///< place in the list of laws
+  ContactRules contact;
+  std::optional<double> reference_speed;
 };
 
-/// Refuses two keys where only one may stand.
-template <class Law>
-void check_alternatives(const TableReader& table) {
-  const auto group = [](std::size_t k) {
-    return Law::kKeys[k].instead_of >= 0 ? Law::kKeys[k].instead_of : static_cast<int>(k);
-  };
-  for (std::size_t k = 0; k < Law::kKeys.size(); ++k) {
-    for (std::size_t other = k + 1; other < Law::kKeys.size(); ++other) {
-      if (group(k) == group(other)) table.has_one_of(Law::kKeys[k].name, Law::kKeys[other].name);
-    }
-  }
-}
-
-template <class Law>
-ContactConstants read_constants_of(const TableReader& table) {
-  check_alternatives<Law>(table);
-  ContactConstants constants;
-  for (const auto& key : Law::kKeys) {
-    if (const auto value = table.optional_number(key.name)) key.set(constants, *value);
-  }
-  return constants;
-}
-
-/// A material without the law's first key has no constants at all.
-template <class Law>
-std::optional<ContactConstants> read_own_constants_of(const TableReader& table) {
-  const std::string first = Law::kKeys[0].name;
-  if (table.has(first)) return read_constants_of<Law>(table);
-  for (const auto& key : Law::kKeys) {
-    if (table.has(key.name)) {
-      table.fail(key.name, fmt::format("{} without {}", key.name, first),
-                 fmt::format("add {} to the material, or move its constants to a [[pair]]", first));
-    }
-  }
-  return std::nullopt;
+Rules read_rules(const TableReader& root) {
+  Rules rules;
+  const Node* node = root.table("contact");
+  if (node == nullptr) return rules;
+  const TableReader table(*node, root.dimension(), "[contact]");
+  rules.is_mixed = table.string("mixing") == "harmonic";
+  rules.law = read_law(table);
+  rules.contact.no_tension = table.boolean("no_tension");
+  if (table.string("tangential") == "mindlin-displacement")
+    rules.contact.tangential = Tangential::MindlinDisplacement;
+  rules.reference_speed = table.optional_number("reference_speed");
+  return rules;
 }
 
 std::optional<ContactConstants> mix(int law, const ContactConstants& a, const ContactConstants& b) {
-  return with_law(law, [&]<class Law>(Law /*law*/) -> std::optional<ContactConstants> {
-    const auto mixed = Law::mix(a, b);
-    if (!mixed) return std::nullopt;
-    ContactConstants constants;
-    static_cast<typename Law::Pair&>(constants) = *mixed;
-    return constants;
-  });
+  return with_law(law, [&]<class Law>(Law /*law*/) { return Law::mix(a, b); });
+}
+
+std::optional<KeyGap> find_gap(int law, const ContactConstants& constants) {
+  return with_law(law, [&]<class Law>(Law /*law*/) { return Law::find_gap(constants); });
 }
 
 /// Who can touch whom: walls never touch walls.
@@ -98,13 +76,18 @@ class ContactBuilder {
       : root_(root),
         draft_(draft),
         num_(draft.deck.model.materials.size()),
+        rules_(read_rules(root)),
         explicit_(num_ * num_) {}
 
   void read_own() {
     for (const Node* node : root_.tables("material")) {
       const TableReader table(*node, root_.dimension(), "[[material]]");
-      own_.push_back(with_law(
-          law_, [&]<class Law>(Law /*law*/) { return read_own_constants_of<Law>(table); }));
+      ContactConstants constants;
+      const std::string first = read_law_keys(rules_.law, table, constants);
+      own_.push_back(first.empty() ? std::nullopt : std::optional(constants));
+      if (first.empty()) continue;
+      if (const auto gap = find_gap(rules_.law, constants))
+        table.fail(first, first + " " + gap->what, gap->remedy);
     }
   }
 
@@ -113,20 +96,23 @@ class ContactBuilder {
       read_pair(TableReader(*node, root_.dimension(), "[[pair]]"));
   }
 
-  ContactTable build(const Rules& rules) const {
+  ContactTable build() const {
     const Users users = find_users(draft_.deck);
+    refuse_rigid_particles(users);
     ContactTable table;
     table.num_materials = static_cast<int>(num_);
-    table.no_tension = rules.no_tension;
-    table.law = law_;
+    table.no_tension = rules_.contact.no_tension;
+    table.law = rules_.law;
+    table.tangential = rules_.contact.tangential;
+    table.reference_speed = rules_.reference_speed;
     table.constants.resize(num_ * num_);
     for (std::size_t a = 0; a < num_; ++a) {
       for (std::size_t b = a; b < num_; ++b) {
-        const auto constants = find(a, b, rules.is_mixed && users.can_meet(a, b));
-        if (!constants && users.can_meet(a, b)) fail_missing(a, b, rules.is_mixed);
+        const auto constants = find(a, b, rules_.is_mixed && users.can_meet(a, b));
+        if (users.can_meet(a, b)) check_complete(a, b, constants);
         auto& pair = table.constants[a * num_ + b];
         pair = constants.value_or(ContactConstants{});
-        with_law(law_, [&]<class Law>(Law /*law*/) { Law::solve(pair, rules.no_tension); });
+        with_law(rules_.law, [&]<class Law>(Law /*law*/) { Law::solve(pair, rules_.contact); });
         table.constants[b * num_ + a] = pair;
       }
     }
@@ -148,24 +134,78 @@ class ContactBuilder {
       table.fail("materials", fmt::format("a second [[pair]] of '{}' and '{}'", names[0], names[1]),
                  "keep one");
     }
-    explicit_[a * num_ + b] = explicit_[b * num_ + a] =
-        with_law(law_, [&]<class Law>(Law /*law*/) { return read_constants_of<Law>(table); });
+    ContactConstants constants = base_of(a, b, table);
+    read_law_keys(rules_.law, table, constants);
+    if (pairs_stand_alone()) {
+      if (const auto gap = find_gap(rules_.law, constants))
+        table.fail("materials", "[[pair]] " + gap->what, gap->remedy);
+    }
+    if (table.has("restitution")) constants.is_mixed = false;
+    explicit_[a * num_ + b] = explicit_[b * num_ + a] = constants;
+  }
+
+  [[nodiscard]] bool pairs_stand_alone() const {
+    return with_law(rules_.law, []<class Law>(Law /*law*/) { return Law::kPairsStandAlone; });
+  }
+
+  /// What a [[pair]] begins with.
+  [[nodiscard]] ContactConstants base_of(std::size_t a, std::size_t b,
+                                         const TableReader& table) const {
+    if (pairs_stand_alone()) return {};
+    for (const std::size_t m : {a, b}) {
+      if (own_[m]) continue;
+      table.fail(
+          "materials",
+          fmt::format("'{}' has no constants of its own, from which those of the pair follow",
+                      draft_.deck.model.materials[m].name),
+          "add young_modulus and poisson_ratio to the material, or, for walls, rigid = true");
+    }
+    return mixed_of(a, b);
+  }
+
+  /// @pre both materials have constants
+  [[nodiscard]] ContactConstants mixed_of(std::size_t a, std::size_t b) const {
+    if (a == b && pairs_stand_alone()) return *own_[a];
+    auto mixed = mix(rules_.law, *own_[a], *own_[b]);
+    if (mixed) {
+      mixed->is_mixed = a != b;
+      return *mixed;
+    }
+    throw InputError(
+        draft_.materials.place(static_cast<int>(b)),
+        fmt::format("{} give their damping in different ways, which do not mix", pair_name(a, b)),
+        fmt::format("give both a coefficient, both a rate or both a restitution, or add a {}",
+                    pair_text(a, b)));
   }
 
   [[nodiscard]] std::optional<ContactConstants> find(std::size_t a, std::size_t b,
                                                      bool is_mixed) const {
     if (explicit_[a * num_ + b]) return explicit_[a * num_ + b];
-    if (a == b) return own_[a];
-    if (!is_mixed || !own_[a] || !own_[b]) return std::nullopt;
-    const auto mixed = mix(law_, *own_[a], *own_[b]);
-    if (!mixed) {
-      throw InputError(
-          draft_.materials.place(static_cast<int>(b)),
-          fmt::format("{} give their damping in different ways, which do not mix", pair_name(a, b)),
-          fmt::format("give both a coefficient, both a rate or both a restitution, or add a {}",
-                      pair_text(a, b)));
+    if ((a != b && !is_mixed) || !own_[a] || !own_[b]) return std::nullopt;
+    return mixed_of(a, b);
+  }
+
+  void refuse_rigid_particles(const Users& users) const {
+    for (std::size_t a = 0; a < num_; ++a) {
+      if (!users.particles[a] || !own_[a] || !own_[a]->is_rigid) continue;
+      throw InputError(draft_.materials.place(static_cast<int>(a)),
+                       fmt::format("'{}' is rigid, and particles are made of it: rigid bodies do "
+                                   "not touch elastically",
+                                   draft_.deck.model.materials[a].name),
+                       "give it young_modulus and poisson_ratio; rigid is for walls");
     }
-    return mixed;
+  }
+
+  void check_complete(std::size_t a, std::size_t b,
+                      const std::optional<ContactConstants>& constants) const {
+    if (!constants) fail_missing(a, b, rules_.is_mixed);
+    const char* key =
+        with_law(rules_.law, [&]<class Law>(Law /*law*/) { return Law::lacking(*constants); });
+    if (key == nullptr) return;
+    throw InputError(draft_.materials.place(static_cast<int>(b)),
+                     fmt::format("contacts of {} have no {}", pair_name(a, b), key),
+                     fmt::format("add {} to {}, or to a {}", key,
+                                 a == b ? "the material" : "both materials", pair_text(a, b)));
   }
 
   [[noreturn]] void fail_missing(std::size_t a, std::size_t b, bool is_mixed) const {
@@ -190,7 +230,7 @@ class ContactBuilder {
   const TableReader& root_;
   const DeckDraft& draft_;
   std::size_t num_;
-  int law_ = 0;  ///< place in the list of laws: there is one
+  Rules rules_;
   PairTable explicit_;
   PairTable own_;
 };
@@ -216,13 +256,7 @@ void read_contacts(const TableReader& root, DeckDraft& draft) {
   ContactBuilder builder(root, draft);
   builder.read_own();
   builder.read_pairs();
-  Rules rules;
-  if (const Node* node = root.table("contact")) {
-    const TableReader table(*node, root.dimension(), "[contact]");
-    rules.is_mixed = table.string("mixing") == "harmonic";
-    rules.no_tension = table.boolean("no_tension");
-  }
-  draft.deck.model.contacts = builder.build(rules);
+  draft.deck.model.contacts = builder.build();
 }
 
 }  // namespace barchan::deck

@@ -41,6 +41,8 @@ std::string type_text(const KeySpec& spec) {
       return "number in (0, 1]";
     case ValueType::Fraction:
       return "number in [0, 1]";
+    case ValueType::PoissonRatio:
+      return "number in (-1, 0.5]";
     case ValueType::ProperFraction:
       return "number in (0, 1)";
     case ValueType::Integer:

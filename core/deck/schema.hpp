@@ -32,6 +32,7 @@ enum class ValueType {
   NonNegativeNumber,
   Restitution,     ///< (0, 1]
   Fraction,        ///< [0, 1]
+  PoissonRatio,    ///< (-1, 0.5]
   ProperFraction,  ///< (0, 1)
   Integer,
   PositiveInteger,

@@ -17,6 +17,17 @@ constexpr KeySpec kPhysicsKeys[] = {
      "of a particle's own body"},
     {"[[pair]]", "materials", T::Names, "", "required",
      "the names of two materials, which may be the same"},
+    {"[contact]", "model", T::Choice, "", "linear",
+     "`linear`: springs of a given stiffness; `hertz`: elastic spheres by `young_modulus` and "
+     "`poisson_ratio`, in 3D",
+     "linear|hertz"},
+    {"[contact]", "tangential", T::Choice, "", "mindlin",
+     "of hertz contacts: `mindlin` adds up increments of force and takes back on unloading what "
+     "the "
+     "smaller area cannot bear; `mindlin-displacement` multiplies displacement by stiffness",
+     "mindlin|mindlin-displacement"},
+    {"[contact]", "reference_speed", T::PositiveNumber, "m/s", "of the start and of falls",
+     "of hertz contacts: the impact that the stable step allows for"},
     {"[contact]", "no_tension", T::Boolean, "", "true",
      "a contact never pulls: the normal force is held at zero where the dashpot outweighs the "
      "spring"},
@@ -69,23 +80,33 @@ std::span<const KeySpec> physics_keys() {
 
 namespace {
 
-template <class Range>
-T type_of(Range range) {
-  if (range == Range::Positive) return T::PositiveNumber;
-  return range == Range::Restitution ? T::Restitution : T::NonNegativeNumber;
+T type_of(LawKey::Range range) {
+  switch (range) {
+    case LawKey::Range::Positive:
+      return T::PositiveNumber;
+    case LawKey::Range::Restitution:
+      return T::Restitution;
+    case LawKey::Range::Poisson:
+      return T::PoissonRatio;
+    case LawKey::Range::Flag:
+      return T::Boolean;
+    case LawKey::Range::NotNegative:
+      break;
+  }
+  return T::NonNegativeNumber;
 }
 
-/// Where a pair requires a key, materials need it together or not at all. Laws may share keys.
+/// Laws may share keys: the first one explains them.
 template <class Law, class... Rest>
 void add_keys(LawList<Law, Rest...> /*laws*/, std::vector<KeySpec>& to) {
-  for (const auto& key : Law::kKeys) {
+  for (const LawKey& key : Law::kKeys) {
     const bool is_known =
         std::any_of(to.begin(), to.end(), [&](const KeySpec& k) { return k.key == key.name; });
     if (is_known) continue;
-    const bool is_required = std::string_view(key.fallback) == "required";
-    to.push_back({"[[material]]", key.name, type_of(key.range), key.unit,
-                  is_required ? "none" : key.fallback, key.meaning});
-    to.push_back({"[[pair]]", key.name, type_of(key.range), key.unit, key.fallback, key.meaning});
+    for (const char* table : {"[[material]]", "[[pair]]"}) {
+      if (key.is_of_material && table == std::string_view("[[pair]]")) continue;
+      to.push_back({table, key.name, type_of(key.range), key.unit, key.fallback, key.meaning});
+    }
   }
   if constexpr (sizeof...(Rest) > 0) add_keys(LawList<Rest...>{}, to);
 }

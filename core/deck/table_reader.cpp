@@ -47,11 +47,13 @@ TableReader::TableReader(const Node& node, int dimension, std::string_view table
 
 void TableReader::refuse_unknown(const Node::Member& member) const {
   std::vector<std::string_view> known;
-  std::string_view elsewhere;
+  std::string elsewhere;
   for (const KeySpec& spec : key_specs()) {
     const bool is_here = spec.table == table_ || (!more_.empty() && spec.table == more_);
     if (is_here) known.push_back(spec.key);
-    if (spec.key == member.key && elsewhere.empty()) elsewhere = spec.table;
+    if (spec.key != member.key) continue;
+    elsewhere += elsewhere.empty() ? "" : " and ";
+    elsewhere += spec.table;
   }
   const std::string where = table_ == "deck" ? "at the top level" : fmt::format("in {}", table_);
   const auto left_out = find_not_modelled(table_, member.key);

@@ -41,6 +41,7 @@ class TableReader {
   [[nodiscard]] SourcePlace place(
       std::string_view key) const;  ///< of the value, or of the table without it
   [[nodiscard]] int dimension() const { return dimension_; }
+  [[nodiscard]] std::string_view name() const { return table_; }  ///< as the schema has it
 
   /// Refuses a second key where only one of two may stand; false when neither does.
   bool has_one_of(std::string_view first, std::string_view second) const;

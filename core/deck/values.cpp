@@ -25,6 +25,8 @@ bool is_in_range(ValueType type, double value) {
       return value > 0.0 && value <= 1.0;
     case ValueType::Fraction:
       return value >= 0.0 && value <= 1.0;
+    case ValueType::PoissonRatio:
+      return value > -1.0 && value <= 0.5;
     case ValueType::ProperFraction:
       return value > 0.0 && value < 1.0;
     default:

@@ -73,7 +73,7 @@ struct BatchAvx2 {
     }
     Simd::transpose(x[0], x[1], x[2], x[3]);
     Simd::transpose(v[0], v[1], v[2], v[3]);
-    p = {x[0], x[1], x[2], v[0], v[1], v[2], v[3]};
+    p = {x[0], x[1], x[2], v[0], v[1], v[2], v[3], x[3]};
   }
 
   BARCHAN_INLINE void gather(const PairJob& job, std::int64_t k, PairState<Simd, 3>& p) {
@@ -88,7 +88,7 @@ struct BatchAvx2 {
     Simd::transpose(x[0], x[1], x[2], x[3]);
     Simd::transpose(v[0], v[1], v[2], v[3]);
     Simd::transpose(u[0], u[1], u[2], u[3]);
-    p = {x[0], x[1], x[2], x[3], v[0], v[1], v[2], v[3], u[0], u[1], u[2]};
+    p = {x[0], x[1], x[2], x[3], v[0], v[1], v[2], v[3], u[0], u[1], u[2], u[3]};
   }
 
   template <int Dim>

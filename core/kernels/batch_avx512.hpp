@@ -131,7 +131,7 @@ struct BatchAvx512 {
   BARCHAN_INLINE void gather(const PairJob& job, std::int64_t k, PairState<Simd, 2>& p) {
     Real c[8];
     differences(job, k, _mm512_setr_pd(-1, -1, 1, 1, -1, -1, 1, 1), c);
-    p = {c[0], c[1], c[2], c[4], c[5], c[6], c[7]};
+    p = {c[0], c[1], c[2], c[4], c[5], c[6], c[7], c[3]};
   }
 
   BARCHAN_INLINE void gather(const PairJob& job, std::int64_t k, PairState<Simd, 3>& p) {
@@ -144,7 +144,7 @@ struct BatchAvx512 {
     }
     Real u[4];
     transpose_halves(s, u);
-    p = {c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], u[0], u[1], u[2]};
+    p = {c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], u[0], u[1], u[2], u[3]};
   }
 
   template <int Dim>

@@ -25,7 +25,8 @@ struct BatchScalar {
   static void gather(const PairJob& job, std::int64_t k, PairState<Simd, 2>& p) {
     const double* a = job.motion + 8 * static_cast<std::int64_t>(job.i[k]);
     const double* b = job.motion + 8 * static_cast<std::int64_t>(job.j[k]);
-    p = {b[0] - a[0], b[1] - a[1], a[2] + b[2], b[4] - a[4], b[5] - a[5], a[6] + b[6], a[7] + b[7]};
+    p = {b[0] - a[0], b[1] - a[1], a[2] + b[2], b[4] - a[4],
+         b[5] - a[5], a[6] + b[6], a[7] + b[7], a[3] + b[3]};
   }
 
   static void gather(const PairJob& job, std::int64_t k, PairState<Simd, 3>& p) {
@@ -33,7 +34,7 @@ struct BatchScalar {
     const double *a = job.motion + 8 * i, *b = job.motion + 8 * j;
     const double *u = job.spin + 4 * i, *w = job.spin + 4 * j;
     p = {b[0] - a[0], b[1] - a[1], b[2] - a[2], a[3] + b[3], b[4] - a[4], b[5] - a[5],
-         b[6] - a[6], a[7] + b[7], u[0] + w[0], u[1] + w[1], u[2] + w[2]};
+         b[6] - a[6], a[7] + b[7], u[0] + w[0], u[1] + w[1], u[2] + w[2], u[3] + w[3]};
   }
 
   template <int Dim>

@@ -5,22 +5,25 @@
 #include <barchan/core/kernels/law_view.hpp>
 #include <barchan/core/kernels/pair_job.hpp>
 #include <barchan/core/laws/contact.hpp>
+#include <barchan/core/laws/contact_constants.hpp>
 #include <barchan/core/laws/history.hpp>
 #include <barchan/core/simd/scalar.hpp>
 
 namespace barchan {
 
-/// A law for disks, or for spheres.
+/// A law for disks, or for spheres; no functions where it is not for them.
 template <int Dim>
 struct ContactLawIn {
   using State = PairState<simd::Scalar, Dim>;
   using Force = PairForce<simd::Scalar, Dim>;
 
-  History history;
+  History history{};
   /// What acts on the first of a pair; zero where they do not touch.
   /// @param row  constants; `history` is replaced by its value after the step
-  Force (*respond)(int level, const double* row, const State& pair, double dt, double* history);
-  double (*energy)(const double* row, double overlap, const double* history);  ///< elastic [J]
+  Force (*respond)(int level, const double* row, const State& pair, double dt,
+                   double* history) = nullptr;
+  /// Elastic [J].
+  double (*energy)(const double* row, const Overlap& overlap, const double* history) = nullptr;
 };
 
 /// A law of contact as the program sees it, whichever it is. Made from the law's file alone.
@@ -32,7 +35,6 @@ struct ContactLaw {
   bool (*is_common)(int field);  ///< the same in every row
   ContactLawIn<2> disks;
   ContactLawIn<3> spheres;
-  double (*stiffness)(const double* row);  ///< along the normal [N/m]
   Kernel kernel;
 
   template <int Dim>
@@ -68,10 +70,13 @@ PairForce<simd::Scalar, Dim> respond_at(int level, const double* row,
 
 template <class Law, int Dim>
 ContactLawIn<Dim> law_in() {
-  return {Law::template kHistory<Dim>, &respond_at<Law, Dim>,
-          [](const double* row, double overlap, const double* history) {
-            return Law::energy(row, Law::template kHistory<Dim>, overlap, history);
-          }};
+  if constexpr (Dim == 2 && !Law::kIsForDisks)
+    return {};
+  else
+    return {Law::template kHistory<Dim>, &respond_at<Law, Dim>,
+            [](const double* row, const Overlap& overlap, const double* history) {
+              return Law::energy(row, Law::template kHistory<Dim>, overlap, history);
+            }};
 }
 
 }  // namespace detail
@@ -85,7 +90,6 @@ template <class Law>
           [](int field) { return Law::is_common(field); },
           detail::law_in<Law, 2>(),
           detail::law_in<Law, 3>(),
-          [](const double* row) { return Law::row_stiffness(row); },
           kernel};
 }
 

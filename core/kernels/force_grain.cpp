@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <barchan/core/model/mass.hpp>
+#include <barchan/core/model/relative_speed.hpp>
 
 namespace barchan {
 namespace {
@@ -27,26 +28,6 @@ std::vector<Largest> largest_of(const Model& model, const ParticleSet& set) {
   return largest;
 }
 
-/// What a particle can fall by along an axis, down to the end of the domain [m²/s²].
-double depth_below(const Model& model, const ParticleSet& set, int axis) {
-  const double gravity = model.gravity[axis];
-  const double lo = model.domain.lo[axis], hi = model.domain.hi[axis];
-  if (model.domain.periodic[static_cast<std::size_t>(axis)]) return std::fabs(gravity) * (hi - lo);
-  double deepest = 0.0;
-  for (const ParticleData& p : set.particles)
-    deepest = std::max(deepest, gravity * ((gravity > 0.0 ? hi : lo) - p.position[axis]));
-  return deepest;
-}
-
-/// Of two particles that come from where they were, and from what pushes them [m/s].
-double relative_speed(const Model& model, const ParticleSet& set) {
-  double start = 0.0, depth = 0.0, wall = 0.0;
-  for (const ParticleData& p : set.particles) start = std::max(start, p.velocity.norm());
-  for (const WallSpec& w : model.walls) wall = std::max(wall, w.velocity.norm());
-  for (int c = 0; c < model.dimension; ++c) depth += depth_below(model, set, c);
-  return 2.0 * (start + wall) + std::sqrt(2.0 * depth);
-}
-
 /// Of the smaller radius; without a limit the centres meet.
 double largest_share(double overlap_limit) {
   return std::isfinite(overlap_limit) ? overlap_limit : 2.0;
@@ -57,10 +38,11 @@ double largest_share(double overlap_limit) {
 double largest_sum(const ContactConstants& pair, const Largest& a, const Largest& b, double speed,
                    const Model& model) {
   const bool is_flat = model.dimension == 2;
-  const double mass = a.mass * b.mass / (a.mass + b.mass);
+  const Impact impact{a.mass * b.mass / (a.mass + b.mass),
+                      a.radius * b.radius / (a.radius + b.radius), speed};
   const double overlap = largest_share(model.limits.overlap_error) * std::min(a.radius, b.radius);
   return with_law(model.contacts.law, [&]<class Law>(Law /*law*/) {
-    return Law::largest_force(pair, is_flat ? 3.0 : 6.0, overlap, mass, speed);
+    return Law::largest_force(pair, is_flat ? 3.0 : 6.0, overlap, impact);
   });
 }
 

@@ -44,7 +44,6 @@ namespace {
 
 /// Who picks the kernels of one width.
 struct Pickers {
-  PairKernel (*pairs)(int law, int dim, int variant);
   NarrowKernel (*narrow)(int dim, bool periodic);
   SearchKernel (*search)(int dim);
   RowKernel (*rows)(int dim, bool damped);
@@ -53,34 +52,29 @@ struct Pickers {
 Pickers pickers_of(VectorWidth width) {
   using namespace kernels;
 #ifdef BARCHAN_HAS_X86_KERNELS
-  if (width == VectorWidth::Avx512)
-    return {pick_avx512, pick_narrow_avx512, pick_search_avx512, pick_rows_avx2};
-  if (width == VectorWidth::Avx2)
-    return {pick_avx2, pick_narrow_avx2, pick_search_avx2, pick_rows_avx2};
+  if (width == VectorWidth::Avx512) return {pick_narrow_avx512, pick_search_avx512, pick_rows_avx2};
+  if (width == VectorWidth::Avx2) return {pick_narrow_avx2, pick_search_avx2, pick_rows_avx2};
 #endif
   (void)width;
-  return {pick_scalar, pick_narrow_scalar, pick_search_scalar, pick_rows_scalar};
+  return {pick_narrow_scalar, pick_search_scalar, pick_rows_scalar};
 }
 
-/// The place in the list is known when it is compiled: a law keeps a pointer to such a function.
-template <int Place>
-PairKernel listed_kernel(VectorWidth width, int dim, int variant) {
-  return pickers_of(width).pairs(Place, dim, variant);
-}
-
-template <int Place = 0>
-ContactLaw law_at(int place) {
-  if constexpr (Place + 1 < Laws::kSize) {
-    if (place > Place) return law_at<Place + 1>(place);
-  }
-  return with_law(std::integral_constant<int, Place>{},
-                  [](auto law) { return contact_law<decltype(law)>(&listed_kernel<Place>); });
+template <class Law>
+PairKernel pair_kernel(VectorWidth width, int dim, int variant) {
+  using namespace kernels;
+#ifdef BARCHAN_HAS_X86_KERNELS
+  if (width == VectorWidth::Avx512) return pick_avx512<Law>(dim, variant);
+  if (width == VectorWidth::Avx2) return pick_avx2<Law>(dim, variant);
+#endif
+  (void)width;
+  return pick_scalar<Law>(dim, variant);
 }
 
 }  // namespace
 
 ContactLaw listed_law(int place) {
-  return law_at(place);
+  return with_law(place,
+                  []<class Law>(Law /*law*/) { return contact_law<Law>(&pair_kernel<Law>); });
 }
 
 KernelSet make_kernels(int dim, VectorWidth width, const LawTable& laws, bool has_bonds,

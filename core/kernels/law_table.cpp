@@ -24,7 +24,7 @@ LawTable::LawTable(const ContactTable& contacts)
                [&](int a, int b, double* row) {
                  with_law(contacts.law, [&]<class Law>(Law /*law*/) {
                    const ContactConstants null;
-                   Law::write(a < 0 ? null : contacts.at(a, b), contacts.no_tension, row);
+                   Law::write(a < 0 ? null : contacts.at(a, b), contacts.rules(), row);
                  });
                }) {}
 

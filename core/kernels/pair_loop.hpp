@@ -118,20 +118,18 @@ PairKernel pick(int variant) {
 
 template <class Law, class B>
 PairKernel pick_in(int dim, int variant) {
-  return dim == 2 ? pick<Law, B, 2>(variant) : pick<Law, B, 3>(variant);
+  if (dim == 3) return pick<Law, B, 3>(variant);
+  if constexpr (kIsFor<Law, 2>) return pick<Law, B, 2>(variant);
+  return nullptr;
 }
 
-/// Of the law at a place of the list.
-template <class B, class First, class... Rest>
-PairKernel pick_listed(LawList<First, Rest...> /*list*/, int law, int dim, int variant) {
-  if constexpr (sizeof...(Rest) > 0) {
-    if (law > 0) return pick_listed<B>(LawList<Rest...>{}, law - 1, dim, variant);
-  }
-  return pick_in<First, B>(dim, variant);
-}
-
-PairKernel pick_scalar(int law, int dim, int variant);
-PairKernel pick_avx2(int law, int dim, int variant);
-PairKernel pick_avx512(int law, int dim, int variant);
+// A law's kernels of one width stand in a file of their own: what a compiler makes of one law does
+// not depend on others.
+template <class Law>
+PairKernel pick_scalar(int dim, int variant);
+template <class Law>
+PairKernel pick_avx2(int dim, int variant);
+template <class Law>
+PairKernel pick_avx512(int dim, int variant);
 
 }  // namespace barchan::kernels

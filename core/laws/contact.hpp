@@ -16,6 +16,7 @@ struct PairState<S, 2> {
   Real dx, dy, reach;    ///< reach = r_i + r_j
   Real vx, vy, surface;  ///< surface = u_i + u_j
   Real inverse_mass;     ///< 1/m_i + 1/m_j
+  Real inverse_radius;   ///< 1/r_i + 1/r_j; a wall is flat, 1/r = 0
 };
 
 template <class S>
@@ -23,7 +24,7 @@ struct PairState<S, 3> {
   using Real = typename S::Real;
   Real dx, dy, dz, reach;
   Real vx, vy, vz, inverse_mass;
-  Real ux, uy, uz;
+  Real ux, uy, uz, inverse_radius;
 };
 
 /// Force on the first particle [N], and torque / radius on both; the second one gets the negative

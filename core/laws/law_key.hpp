@@ -1,19 +1,28 @@
 #pragma once
 
+#include <string>
+
+#include <barchan/core/laws/contact_constants.hpp>
+
 namespace barchan {
 
-/// A key with a number in a deck's [[material]] and [[pair]], and where the number goes.
-template <class Pair>
+/// A key in a deck's [[material]] and [[pair]], and where its number goes.
 struct LawKey {
-  enum class Range { Positive, NotNegative, Restitution };
+  enum class Range { Positive, NotNegative, Restitution, Poisson, Flag };
 
   const char* name;
   Range range;
   const char* unit;
-  const char* fallback;  ///< "required", "none" or a number
+  const char* fallback;  ///< "none" or a value
   const char* meaning;
-  void (*set)(Pair& pair, double value);
+  void (*set)(ContactConstants& pair, double value);  ///< a flag is 1 or 0
   int instead_of = -1;  ///< place of the key whose place it takes: of all such keys one may stand
+  bool is_of_material = false;  ///< not a key of [[pair]]
+};
+
+/// What constants lack, to follow what they have: "without normal_stiffness".
+struct KeyGap {
+  std::string what, remedy;
 };
 
 }  // namespace barchan

@@ -2,6 +2,7 @@
 
 #include <type_traits>
 
+#include <barchan/core/laws/hertz_mindlin.hpp>
 #include <barchan/core/laws/linear_spring.hpp>
 
 namespace barchan {
@@ -13,12 +14,11 @@ struct LawList {
 
 /// The laws of contact, a file each. Kernels, tables, checks, walls and measures follow from this
 /// list. A run has one of them.
-using Laws = LawList<LinearSpring>;
+using Laws = LawList<LinearSpring, HertzMindlin>;
 
-template <class List>
-struct PairOfAll;
-template <class... Ls>
-struct PairOfAll<LawList<Ls...>> : Ls::Pair... {};
+/// Whether a law is for disks, or for spheres.
+template <class Law, int Dim>
+inline constexpr bool kIsFor = Dim == 3 || Law::kIsForDisks;
 
 /// Numbers of the longest history in the list.
 template <int Dim, class List = Laws>
@@ -28,9 +28,6 @@ inline constexpr int kLongestHistory<Dim, LawList<First, Rest...>> =
     First::template kHistory<Dim>.length > kLongestHistory<Dim, LawList<Rest...>>
         ? First::template kHistory<Dim>.length
         : kLongestHistory<Dim, LawList<Rest...>>;
-
-/// What a deck says of a pair of materials, for the run's law.
-using ContactConstants = PairOfAll<Laws>;
 
 template <class First, class... Rest, class F>
 [[gnu::always_inline]] inline decltype(auto) with_law_of(LawList<First, Rest...> /*list*/,
@@ -55,11 +52,14 @@ template <int Dim>
 
 template <int Dim, class... Ls, class F>
 [[gnu::always_inline]] inline void with_length_of(LawList<Ls...> /*list*/, int length, F&& f) {
-  const bool is_listed =
-      ((length == Ls::template kHistory<Dim>.length &&
-        (f(std::integral_constant<int, Ls::template kHistory<Dim>.length>{}), true)) ||
-       ...);
-  if (!is_listed) f(length);
+  const auto is_of = [&]<class Law>(Law /*law*/) {
+    if constexpr (kIsFor<Law, Dim>) {
+      constexpr int kLength = Law::template kHistory<Dim>.length;
+      if (length == kLength) return f(std::integral_constant<int, kLength>{}), true;
+    }
+    return false;
+  };
+  if (!(is_of(Ls{}) || ...)) f(length);
 }
 
 /// Calls f with a length of histories, as a constant where a law of the list has it, so that its

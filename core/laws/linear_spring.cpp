@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <fmt/format.h>
 
@@ -12,7 +13,7 @@ namespace barchan {
 namespace {
 
 using Pair = LinearSpring::Pair;
-using Range = LinearSpring::Key::Range;
+using Range = LawKey::Range;
 
 /// Two springs, or dashpots, in series, each of which gives `a` with its like.
 double in_series(double a, double b) {
@@ -39,9 +40,9 @@ std::string text_of(const Dashpot& d) {
 
 }  // namespace
 
-const std::array<LinearSpring::Key, LinearSpring::kNumKeys> LinearSpring::kKeys{{
-    {"normal_stiffness", Range::Positive, "N/m", "required", "normal spring",
-     [](Pair& p, double value) { p.kn = value; }},
+const std::array<LawKey, LinearSpring::kNumKeys> LinearSpring::kKeys{{
+    {"normal_stiffness", Range::Positive, "N/m", "none",
+     "normal spring; linear contacts require it", [](Pair& p, double value) { p.kn = value; }},
     {"tangential_stiffness", Range::NotNegative, "N/m", "0", "tangential spring",
      [](Pair& p, double value) { p.kt = value; }},
     {"normal_damping", Range::NotNegative, "N·s/m", "0", "dashpot coefficient",
@@ -50,7 +51,9 @@ const std::array<LinearSpring::Key, LinearSpring::kNumKeys> LinearSpring::kKeys{
      "dashpot coefficient per effective mass of the pair, instead of `normal_damping`",
      [](Pair& p, double value) { p.cn.rate = value; }, 2},
     {"restitution", Range::Restitution, "", "none",
-     "ratio of normal speeds after and before a collision, instead of `normal_damping`",
+     "ratio of normal speeds after and before a collision; linear: instead of `normal_damping`, "
+     "hertz: "
+     "required",
      [](Pair& p, double value) { p.restitution = value; }, 2},
     {"tangential_damping", Range::NotNegative, "N·s/m", "0", "tangential dashpot",
      [](Pair& p, double value) { p.ct.constant = value; }},
@@ -60,6 +63,12 @@ const std::array<LinearSpring::Key, LinearSpring::kNumKeys> LinearSpring::kKeys{
     {"friction", Range::NotNegative, "", "0", "Coulomb coefficient",
      [](Pair& p, double value) { p.mu = value; }},
 }};
+
+std::optional<KeyGap> LinearSpring::find_gap(const Pair& material) {
+  if (material.kn > 0.0) return std::nullopt;
+  return KeyGap{"without normal_stiffness",
+                "add normal_stiffness to the material, or move its constants to a [[pair]]"};
+}
 
 std::optional<Pair> LinearSpring::mix(const Pair& a, const Pair& b) {
   const auto cn = in_series(a.cn, b.cn);
@@ -78,9 +87,9 @@ std::optional<Pair> LinearSpring::mix(const Pair& a, const Pair& b) {
   return mixed;
 }
 
-void LinearSpring::solve(Pair& p, bool no_tension) {
+void LinearSpring::solve(Pair& p, const ContactRules& rules) {
   if (!p.restitution) return;
-  p.cn.critical = 2.0 * damping_ratio_for(*p.restitution, no_tension) * std::sqrt(p.kn);
+  p.cn.critical = 2.0 * damping_ratio_for(*p.restitution, rules.no_tension) * std::sqrt(p.kn);
 }
 
 std::array<std::string, 5> LinearSpring::texts(const Pair& p) {
@@ -88,10 +97,26 @@ std::array<std::string, 5> LinearSpring::texts(const Pair& p) {
           fmt::format("{:.4g}", p.mu)};
 }
 
-double LinearSpring::restitution(const Pair& p, double reduced_mass, bool no_tension) {
+double LinearSpring::restitution(const Pair& p, double reduced_mass, const ContactRules& rules) {
   if (p.restitution) return *p.restitution;
-  return restitution_at(0.5 * dashpot(p, reduced_mass) / std::sqrt(p.kn * reduced_mass),
-                        no_tension);
+  return restitution_at(0.5 * coefficient(p.cn, reduced_mass) / std::sqrt(p.kn * reduced_mass),
+                        rules.no_tension);
+}
+
+std::string LinearSpring::stiffer(double stiffness, double /*factor*/) {
+  return fmt::format("normal_stiffness = {:.2g}", stiffness);
+}
+
+double LinearSpring::pressed_overlap(const Pair& p, double /*radius*/, double force) {
+  return force / p.kn;
+}
+
+double LinearSpring::struck_overlap(const Pair& p, const Impact& impact) {
+  return impact.speed * std::sqrt(impact.mass / p.kn);
+}
+
+double LinearSpring::duration(const Pair& p, const Impact& impact) {
+  return std::numbers::pi * std::sqrt(impact.mass / p.kn);
 }
 
 double LinearSpring::coefficient(const Dashpot& dashpot, double reduced_mass) {
@@ -99,22 +124,22 @@ double LinearSpring::coefficient(const Dashpot& dashpot, double reduced_mass) {
          dashpot.critical * std::sqrt(reduced_mass);
 }
 
-double LinearSpring::dashpot(const Pair& p, double reduced_mass) {
-  return coefficient(p.cn, reduced_mass);
+double LinearSpring::dashpot(const Pair& p, const Impact& impact) {
+  return coefficient(p.cn, impact.mass);
 }
 
-double LinearSpring::largest_force(const Pair& p, double share, double overlap, double reduced_mass,
-                                   double speed) {
-  return (1.0 + p.mu) * std::max(share * p.kn * overlap, dashpot(p, reduced_mass) * speed);
+double LinearSpring::largest_force(const Pair& p, double share, double overlap,
+                                   const Impact& impact) {
+  return (1.0 + p.mu) * std::max(share * p.kn * overlap, dashpot(p, impact) * impact.speed);
 }
 
 // A null row keeps no spring: with mu = 0 every contact slides, and 0·inverse_kt = 0 clears it.
-void LinearSpring::write(const Pair& p, bool no_tension, double* row) {
+void LinearSpring::write(const Pair& p, const ContactRules& rules, double* row) {
   row[Kn] = p.kn;
   row[Kt] = p.kt;
   row[InverseKt] = p.kt > 0.0 ? 1.0 / p.kt : 0.0;
   row[Mu] = p.mu;
-  row[Cap] = no_tension ? 0.0 : std::numeric_limits<double>::infinity();
+  row[Cap] = rules.no_tension ? 0.0 : std::numeric_limits<double>::infinity();
   row[Cn] = p.cn.constant;
   row[Ct] = p.ct.constant;
   row[CnRate] = p.cn.rate;

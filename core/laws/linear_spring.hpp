@@ -5,19 +5,11 @@
 #include <string>
 
 #include <barchan/core/laws/contact.hpp>
+#include <barchan/core/laws/contact_constants.hpp>
 #include <barchan/core/laws/history.hpp>
 #include <barchan/core/laws/law_key.hpp>
 
 namespace barchan {
-
-/// One dashpot: coefficient = constant + rate·m_eff + critical·sqrt(m_eff).
-/// A deck gives `cn` (constant [N·s/m]), a mass-proportional rate [1/s], or a restitution, which
-/// becomes the `critical` factor 2·zeta·sqrt(kn); restitution.hpp has its zeta.
-struct Dashpot {
-  double constant = 0.0;  ///< [N·s/m]
-  double rate = 0.0;      ///< [1/s]
-  double critical = 0.0;  ///< [sqrt(N/m)]
-};
 
 /// Linear spring–dashpot with Coulomb friction, written once for one, four or eight pairs
 /// (S: simd/*.hpp).
@@ -31,22 +23,20 @@ struct Dashpot {
 /// doi:10.1680/geot.1979.29.1.47; the clamp is ours.
 struct LinearSpring {
   static constexpr const char* kName = "linear";
+  static constexpr bool kIsForDisks = true;
 
   // ---- what a deck says of a pair of materials (linear_spring.cpp)
 
-  struct Pair {
-    double kn = 0.0;  ///< normal stiffness [N/m]
-    double kt = 0.0;  ///< tangential stiffness [N/m]
-    Dashpot cn;
-    Dashpot ct;
-    double mu = 0.0;                    ///< Coulomb friction
-    std::optional<double> restitution;  ///< where cn.critical comes from one; kernels read cn alone
-    bool is_mixed = false;              ///< from the constants of two materials
-  };
-  using Key = LawKey<Pair>;
+  using Pair = ContactConstants;
   static constexpr int kNumKeys = 8;
-  /// Keys of [[material]] and [[pair]]. The first one tells whether there are constants at all.
-  static const std::array<Key, kNumKeys> kKeys;
+  /// Keys of [[material]] and [[pair]].
+  static const std::array<LawKey, kNumKeys> kKeys;
+  /// A [[pair]] says all of its two materials.
+  static constexpr bool kPairsStandAlone = true;
+  /// What a material still has to say; none: nothing.
+  static std::optional<KeyGap> find_gap(const Pair& material);
+  /// What a pair that meets lacks, a key; null: nothing.
+  static const char* lacking(const Pair& /*p*/) { return nullptr; }
 
   /// Calls visit(key, number) for the numbers that act, under the key that gives them.
   template <class P, class Visit>
@@ -61,30 +51,40 @@ struct LinearSpring {
   /// Springs and dashpots in series. None when both damp, but in ways that do not add up.
   static std::optional<Pair> mix(const Pair& a, const Pair& b);
   /// Turns a restitution into the dashpot that rebounds with it.
-  static void solve(Pair& p, bool no_tension);
+  static void solve(Pair& p, const ContactRules& rules);
 
   // ---- what `check` prints of it
   static constexpr const char* kColumns[] = {"kn [N/m]", "kt [N/m]", "cn [N·s/m]", "ct [N·s/m]",
                                              "friction"};
   static std::array<std::string, 5> texts(const Pair& p);
   /// Of a free head-on collision.
-  static double restitution(const Pair& p, double reduced_mass, bool no_tension);
+  static double restitution(const Pair& p, double reduced_mass, const ContactRules& rules);
+  /// How to make contacts stiffer. @param factor  by how much
+  static std::string stiffer(double stiffness, double factor);
 
   // ---- the stable step, and how strong a contact may be
-  static double stiffness(const Pair& p) { return p.kn; }     ///< along the normal [N/m]
-  static double dashpot(const Pair& p, double reduced_mass);  ///< along the normal [N·s/m]
+  static constexpr bool kStiffens = false;                                    ///< with overlap
+  static bool acts(const Pair& p) { return p.kn > 0.0; }                      ///< or cannot meet
+  static double pressed_overlap(const Pair& p, double radius, double force);  ///< at rest [m]
+  static double struck_overlap(const Pair& p, const Impact& impact);  ///< without dashpot [m]
+  static double duration(const Pair& p, const Impact& impact);        ///< without dashpot [s]
+  /// Along the normal, where the overlap of the impact is largest [N/m].
+  static double stiffness(const Pair& p, const Impact& /*impact*/) { return p.kn; }
+  static double dashpot(const Pair& p, const Impact& impact);  ///< there [N·s/m]
   /// Calls add(name, mass, stiffness, dashpot) for the motions of a pair [kg, N/m, N·s/m].
   /// @param spin_gain  m r² / I
   template <class Add>
-  static void for_each_motion(const Pair& p, double reduced_mass, double spin_gain, Add&& add) {
-    add("contact", reduced_mass, p.kn, 0.0);
-    const double cn = dashpot(p, reduced_mass);
-    if (cn > 0.0) add("damping", reduced_mass, p.kn, cn);
-    add("tangential", reduced_mass / (1.0 + spin_gain), p.kt, coefficient(p.ct, reduced_mass));
+  static void for_each_motion(const Pair& p, const Impact& impact, double spin_gain, Add&& add) {
+    const double m = impact.mass;
+    add("contact", m, p.kn, 0.0);
+    const double cn = dashpot(p, impact);
+    if (cn > 0.0) add("damping", m, p.kn, cn);
+    add("tangential", m / (1.0 + spin_gain), p.kt, coefficient(p.ct, m));
   }
+  /// Known of elastic moduli alone.
+  static double wave_time(const Pair& /*p*/, double /*radius*/, double /*density*/) { return 0.0; }
   /// A bound of what a particle bears of `share` contacts at an overlap, or of one impact [N].
-  static double largest_force(const Pair& p, double share, double overlap, double reduced_mass,
-                              double speed);
+  static double largest_force(const Pair& p, double share, double overlap, const Impact& impact);
 
   // ---- what kernels read: one row of numbers a pair of materials
 
@@ -102,7 +102,7 @@ struct LinearSpring {
     CtCritical,
     kNumFields
   };
-  static void write(const Pair& p, bool no_tension, double* row);
+  static void write(const Pair& p, const ContactRules& rules, double* row);
 
   /// What the dashpots of a run depend on; the cheapest that serves all its pairs. A pair gives the
   /// same bits at any level.
@@ -130,13 +130,12 @@ struct LinearSpring {
   template <class S, int Dim>
   using Force = PairForce<S, Dim>;
 
-  static double row_stiffness(const double* row) { return row[Kn]; }
   /// Stored in the springs of a contact [J].
-  static double energy(const double* row, const History& history, double overlap,
+  static double energy(const double* row, const History& history, const Overlap& overlap,
                        const double* spring) {
     double s2 = 0.0;
     for (int c = 0; c < history.length; ++c) s2 += spring[c] * spring[c];
-    return 0.5 * (row[Kn] * overlap * overlap + row[Kt] * s2);
+    return 0.5 * (row[Kn] * overlap.depth * overlap.depth + row[Kt] * s2);
   }
 
   /// @param s  history: the tangential spring [m], replaced by its value after the step; zero where

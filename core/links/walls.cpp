@@ -39,10 +39,12 @@ PairState<S, Dim> pair_with_wall(const ParticleStore<Dim>& s, std::int32_t row, 
   const double *w = s.v(row), *u = s.u(row);
   const Vec3& d = to.to_wall;
   if constexpr (Dim == 2) {
-    return {d[0], d[1], to.reach, v[0] - w[0], v[1] - w[1], u[0], to.inverse_mass};
+    return {d[0],        d[1], to.reach,        v[0] - w[0],
+            v[1] - w[1], u[0], to.inverse_mass, s.inverse_radius(row)};
   } else {
-    return {d[0], d[1], d[2], to.reach, v[0] - w[0], v[1] - w[1], v[2] - w[2], to.inverse_mass,
-            u[0], u[1], u[2]};
+    return {d[0],        d[1],        d[2],        to.reach,
+            v[0] - w[0], v[1] - w[1], v[2] - w[2], to.inverse_mass,
+            u[0],        u[1],        u[2],        s.inverse_radius(row)};
   }
 }
 

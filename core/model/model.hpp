@@ -41,6 +41,11 @@ struct ContactTable {
   std::vector<ContactConstants> constants;
   bool no_tension = true;  ///< clamp the normal force at zero while particles part
   int law = 0;             ///< place in the list of laws
+  Tangential tangential = Tangential::Mindlin;  ///< read by Hertz contacts
+  /// Of an impact that the stable step allows for [m/s]; none: as fast as the start and falls make it.
+  std::optional<double> reference_speed = std::nullopt;
+
+  [[nodiscard]] ContactRules rules() const { return {no_tension, tangential}; }
 
   [[nodiscard]] const ContactConstants& at(int a, int b) const {
     return constants[static_cast<std::size_t>(a) * static_cast<std::size_t>(num_materials) +

@@ -93,6 +93,8 @@ void check_contacts(const Model& model) {
   require(table.law >= 0 && table.law < Laws::kSize, "contact",
           fmt::format("contacts by law number {}", table.law),
           fmt::format("there are {}, which count from 0", Laws::kSize));
+  if (const auto fault = find_law_fault(table.law, model.dimension)) throw *fault;
+  if (table.reference_speed) positive("contact.reference_speed", *table.reference_speed);
   for (std::size_t a = 0; a < n; ++a) {
     const std::string key = fmt::format("material.{}.", a + 1);
     positive(key + "density", model.materials[a].density);
@@ -236,6 +238,17 @@ void check(const Model& model) {
 }
 
 }  // namespace
+
+std::optional<ModelFault> find_law_fault(int law, int dimension) {
+  return with_law(law, [&]<class Law>(Law /*law*/) -> std::optional<ModelFault> {
+    if (dimension == 3 || Law::kIsForDisks) return std::nullopt;
+    return ModelFault{"contact.model",
+                      fmt::format("contact.model = \"{}\" in 2D: a disk of unit thickness touches "
+                                  "along a line, for which there is no Hertz law",
+                                  Law::kName),
+                      "write model = \"linear\", or dimension = 3 for spheres"};
+  });
+}
 
 std::optional<ModelFault> find_fault(const Model& model) {
   try {

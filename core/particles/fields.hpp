@@ -29,6 +29,7 @@ template <int Dim>
 inline constexpr std::tuple kRowArrays{
     RowArray<Dim, double>{&ParticleStore<Dim>::motion, Layout<Dim>::kMotion},
     RowArray<Dim, double>{&ParticleStore<Dim>::spin, Layout<Dim>::kSpin},
+    RowArray<Dim, double>{&ParticleStore<Dim>::density, 1},
     RowArray<Dim, double>{&ParticleStore<Dim>::external, Layout<Dim>::kForce, true},
     RowArray<Dim, std::int64_t>{&ParticleStore<Dim>::id, 1},
     RowArray<Dim, std::int64_t>{&ParticleStore<Dim>::key, 1},
@@ -70,7 +71,7 @@ template <int Dim>
 constexpr auto make_fields() {
   using L = Layout<Dim>;
   using Share = CheckpointShare;
-  const auto& [motion, spin, external, id, key, type, flags] = kRowArrays<Dim>;
+  const auto& [motion, spin, density, external, id, key, type, flags] = kRowArrays<Dim>;
   const auto& surface = std::get < Dim == 2 ? 0 : 1 > (kRowArrays<Dim>);
   using Reals = Field<Dim, double>;
   using Bytes = Field<Dim, std::uint8_t>;
@@ -83,8 +84,7 @@ constexpr auto make_fields() {
       Reals{"radii", "m", motion, L::kRadius, 1, false, 21, &Share::radii},
       Reals{"inverse masses", "1/kg", motion, L::kInverseMass, 1, false, 22,
             &Share::inverse_masses},
-      Reals{"densities", Dim == 2 ? "kg/m²" : "kg/m³", surface, L::kDensity, 1, false, 26,
-            &Share::densities},
+      Reals{"densities", Dim == 2 ? "kg/m²" : "kg/m³", density, 0, 1, false, 26, &Share::densities},
       Bytes{"types", "", type, 0, 1, false, 23, &Share::types},
       Bytes{"flags", "", flags, 0, 1, false, 24, &Share::flags},
       Reals{"external forces", "N", external, 0, L::kForce, false, 25, &Share::externals},

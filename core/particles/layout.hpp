@@ -9,14 +9,14 @@ namespace barchan {
 
 /// Particles live in aligned records, so that a batch of pairs is aligned loads and a transpose:
 ///
-///   2D  motion | x  y  r rho | vx vy u  1/m |
+///   2D  motion | x  y  r 1/r | vx vy u  1/m |
 ///       force  | fx fy ft S  |
 ///
 ///   3D  motion | x  y  z  r  | vx vy vz 1/m |
-///       spin   | ux uy uz rho|
+///       spin   | ux uy uz 1/r|
 ///       force  | fx fy fz S  | tx ty tz –   |
 ///
-/// rho is the density; u = r·omega is the surface speed [m/s]; ft, (tx ty tz) are torque / r [N]; S
+/// u = r·omega is the surface speed [m/s]; ft, (tx ty tz) are torque / r [N]; S
 /// is the sum of the sizes of contact forces. A fixed particle has 1/m = 0.
 template <int Dim>
 struct Layout;
@@ -27,7 +27,7 @@ struct Layout<2> {
   static constexpr int kSpin =
       0;  ///< doubles per spin record: the surface speed is in the motion record
   static constexpr int kForce = 4, kTorque = 2;
-  static constexpr int kDensity = 3;        ///< beside the surface speed
+  static constexpr int kInverseRadius = 3;  ///< beside the surface speed
   static constexpr double kSpinGain = 2.0;  ///< m r² / I of a disk
 };
 
@@ -36,7 +36,7 @@ struct Layout<3> {
   static constexpr int kMotion = 8, kRadius = 3, kVelocity = 4, kSurface = 0, kInverseMass = 7;
   static constexpr int kSpin = 4;
   static constexpr int kForce = 8, kTorque = 4;
-  static constexpr int kDensity = 3;
+  static constexpr int kInverseRadius = 3;
   static constexpr double kSpinGain = 2.5;  ///< m r² / I of a sphere
 };
 

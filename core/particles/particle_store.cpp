@@ -24,6 +24,7 @@ void ParticleStore<Dim>::resize_for_ghosts(double rounder) {
     RowRecord<Dim>().put(*this, w);
     x(w)[0] = -1e9 * (1 + w - waste());
     x(w)[L::kInverseMass] = 1.0;
+    (Dim == 2 ? x(w) : u(w))[L::kInverseRadius] = 1.0;
     id[static_cast<std::size_t>(w)] = key[static_cast<std::size_t>(w)] = -1;
   }
 }

@@ -15,12 +15,13 @@ namespace barchan {
 ///
 ///   | owned 0 … n−1 | waste n, n+1 | left ghosts | right ghosts |
 ///
-/// The waste rows pad batches of pairs: they never touch, for their radius is 0.
+/// The waste rows pad batches of pairs: they never touch, for their radius is 0. (They have 1/r = 1.)
 template <int Dim>
 struct ParticleStore {
   using L = Layout<Dim>;
 
   AlignedVector<double> motion, spin, force;
+  AlignedVector<double> density;    ///< [kg/m³], 2D [kg/m²]
   AlignedVector<double> reference;  ///< owned: positions at the last rebuild, Dim each
   AlignedVector<std::int64_t> id;
   AlignedVector<std::int64_t> key;   ///< cell at the last rebuild
@@ -70,10 +71,12 @@ struct ParticleStore {
   }
   [[nodiscard]] double radius(std::int32_t i) const { return x(i)[L::kRadius]; }
   [[nodiscard]] double inverse_mass(std::int32_t i) const { return x(i)[L::kInverseMass]; }
-  /// [kg/m³], 2D [kg/m²]
-  [[nodiscard]] double& density(std::int32_t i) { return (Dim == 2 ? x(i) : u(i))[L::kDensity]; }
-  [[nodiscard]] double density(std::int32_t i) const {
-    return (Dim == 2 ? x(i) : u(i))[L::kDensity];
+  [[nodiscard]] double inverse_radius(std::int32_t i) const {
+    return (Dim == 2 ? x(i) : u(i))[L::kInverseRadius];
+  }
+  void set_radius(std::int32_t i, double radius) {
+    x(i)[L::kRadius] = radius;
+    (Dim == 2 ? x(i) : u(i))[L::kInverseRadius] = 1.0 / radius;
   }
 
   /// Makes room for so many rows of all that moves with a row, but for optional arrays.

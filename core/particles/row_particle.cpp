@@ -28,9 +28,9 @@ void set_particle(ParticleStore<Dim>& store, std::int32_t row, const ParticleDat
   }
   for (int c = 0; c < kSpins<Dim>; ++c)
     u[c] = p.fixed ? 0.0 : p.radius * p.omega[spin_component<Dim>(c)];
-  x[L::kRadius] = p.radius;
+  store.set_radius(row, p.radius);
   x[L::kInverseMass] = p.fixed ? 0.0 : 1.0 / mass_of(p, Dim);
-  store.density(row) = p.density;
+  store.density[at] = p.density;
   store.id[at] = p.id;
   store.type[at] = static_cast<std::uint8_t>(p.type);
   store.flags[at] =
@@ -44,7 +44,7 @@ ParticleData particle_at(const ParticleStore<Dim>& store, std::int32_t row) {
   p.id = store.id[at];
   p.type = store.type[at];
   p.radius = store.radius(row);
-  p.density = store.density(row);
+  p.density = store.density[at];
   p.fixed = (store.flags[at] & ParticleStore<Dim>::kFixed) != 0;
   for (int c = 0; c < Dim; ++c) {
     p.position[c] = store.x(row)[c];

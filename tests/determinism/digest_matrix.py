@@ -1,4 +1,4 @@
-"""The state digest of two example decks after 1,200 steps, over every way to run them.
+"""The state digest of example decks after 1,200 steps, over every way to run them.
 
 usage: digest_matrix.py BARCHAN [--full] [--list]
 
@@ -24,13 +24,14 @@ RANKS = (1, 2, 3, 4)
 THREADS = (1, 2)
 SCHEDULES = ("overlap", "sequential")
 STEPS, ALL_PAIRS_STEPS = 1200, 40
-SKINS = (0.02, 0.05)  # of lists; nobody's bit
 
 # The plate comes down after a tenth of a second, so that the bonds are loaded within the 1,200 steps.
 DECKS = {
     "soil_duct": ["--set", "stage.settle.max_time=0.1", "--set", "wall.plate.point=[8.0, 3.05]"],
     "column_collapse": [],
+    "glass_beads": [],
 }
+SKINS = {"soil_duct": (0.02, 0.05), "column_collapse": (0.02, 0.05), "glass_beads": (0.0003, 0.001)}  # nobody's bit
 
 
 def choices_of(command, option):
@@ -75,7 +76,7 @@ def full_matrix(exchanges, widths):
             yield ranks, threads, exchange, schedule, search, width
 
 
-def chosen(exchanges, widths, shift):
+def chosen(exchanges, widths, shift, skins):
     """Every exchange on every number of ranks, the rest in turns."""
     runs = [(1, 2, exchanges[0], "overlap", "cells", widths[-1]), (1, 1, exchanges[0], "sequential", "all-pairs", widths[-1])]
     ranks = itertools.cycle(RANKS[1:])
@@ -84,7 +85,7 @@ def chosen(exchanges, widths, shift):
         runs.append((next(ranks), THREADS[turn % 2], exchange, SCHEDULES[turn // 2 % 2], "cells", widths[turn % len(widths)]))
         if number % 3 == shift % 3:
             runs.append((next(ranks), THREADS[turn % 2], exchange, SCHEDULES[turn % 2], "all-pairs", widths[turn % len(widths)]))
-    for number, skin in enumerate(SKINS):
+    for number, skin in enumerate(skins):
         runs.append((number + 1, 1, exchanges[shift], "overlap", "cells", widths[-1], "--set", f"search.skin={skin}"))
     return runs
 
@@ -104,7 +105,7 @@ def main():
     failed = number = 0
     begin = time.monotonic()
     for shift, deck in enumerate(DECKS):
-        runs = list(full_matrix(exchanges, widths)) if options.full else chosen(exchanges, widths, shift)
+        runs = list(full_matrix(exchanges, widths)) if options.full else chosen(exchanges, widths, shift, SKINS[deck])
         if options.list:
             print("\n".join(f"{deck}: {' '.join(map(str, run))}" for run in runs))
             continue

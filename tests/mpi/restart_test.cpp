@@ -67,7 +67,9 @@ std::vector<Scenario> restart_scenarios() {
           two_particles(true),
           many_laws(3, true),
           strips_along_y(),
-          plates_at_borders()};
+          plates_at_borders(),
+          hertz_column(),
+          hertz_gas()};
 }
 
 class RestartOf : public testing::TestWithParam<int> {
@@ -120,7 +122,7 @@ TEST_P(RestartOf, GivesTheSameBitsOnAnyNumberOfRanksAndThreads) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenarios, RestartOf, testing::Range(0, 14));
+INSTANTIATE_TEST_SUITE_P(Scenarios, RestartOf, testing::Range(0, 16));
 
 /// Restarts from every step of a stretch, so from before, at and after rebuilds, with and without
 /// checks in flight.

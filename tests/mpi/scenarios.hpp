@@ -260,6 +260,42 @@ inline Scenario stressed_net(int dimension) {
   return s;
 }
 
+/// Gives all contacts of a scenario in 3D elastic moduli. @param young_modulus  of the first
+/// material; others are stiffer
+inline void make_hertz(Scenario& s, double young_modulus, const ContactRules& rules) {
+  const auto n = static_cast<int>(s.model.materials.size());
+  s.model.contacts = {n, {}, rules.no_tension, 1, rules.tangential};
+  std::vector<ContactConstants> own(static_cast<std::size_t>(n));
+  for (int a = 0; a < n; ++a) {
+    own[static_cast<std::size_t>(a)].young_modulus = (1.0 + a) * young_modulus;
+    own[static_cast<std::size_t>(a)].poisson_ratio = 0.3 - 0.1 * a;
+  }
+  for (const ContactConstants& a : own) {
+    for (const ContactConstants& b : own) {
+      ContactConstants p = HertzMindlin::mix(a, b).value();
+      p.mu = 0.4;
+      p.restitution = 0.8;
+      HertzMindlin::solve(p, rules);
+      s.model.contacts.constants.push_back(p);
+    }
+  }
+}
+
+inline Scenario hertz_column() {
+  Scenario s = column_collapse();
+  s.name = "3D column collapse of elastic spheres";
+  make_hertz(s, 2e6, {true, Tangential::Mindlin});
+  return s;
+}
+
+inline Scenario hertz_gas() {
+  Scenario s = gas(3, {true, false, true}, 3.0, "3D gas of two elastic materials, periodic");
+  s.model.materials.push_back({"hard", 1000.0});
+  for (ParticleData& p : s.set.particles) p.type = static_cast<std::int32_t>(p.id % 2);
+  make_hertz(s, 2e6, {false, Tangential::MindlinDisplacement});
+  return s;
+}
+
 /// @param num_materials  5 materials make 15 laws and the null law, more than a vector register
 /// holds
 inline Scenario many_laws(int num_materials, bool no_tension) {

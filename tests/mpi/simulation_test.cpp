@@ -256,5 +256,13 @@ TEST(SameBits, TensionAllowedWithFewLaws) {
   (void)expect_same_bits(many_laws(2, false), 18);
 }
 
+TEST(SameBits, ElasticSpheresThatCollapseAndPile) {
+  EXPECT_GT(expect_same_bits(hertz_column(), 3).contacts, 30);
+}
+
+TEST(SameBits, ElasticSpheresThatMeetAtCuts) {
+  (void)expect_same_bits(hertz_gas(), 8);
+}
+
 }  // namespace
 }  // namespace barchan::test

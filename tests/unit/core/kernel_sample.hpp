@@ -43,11 +43,13 @@ struct Sample {
       for (int c = 4; c < 7; ++c) m[c] = 3.0 * any(random);
       m[L::kInverseMass] = i % 9 == 0 ? 0.0 : 0.5 + std::fabs(any(random));
       for (int c = 0; c < 3; ++c) spin[4 * i + static_cast<std::size_t>(c)] = 2.0 * any(random);
+      inverse_radius(i) = 1.0 / m[L::kRadius];
     }
     for (std::size_t w = n - 2; w < n; ++w) {
       std::fill_n(motion.data() + w * L::kMotion, 8, 0.0);
       motion[w * L::kMotion] = -1e9 * static_cast<double>(1 + w - (n - 2));
       motion[w * L::kMotion + L::kInverseMass] = 1.0;
+      inverse_radius(w) = 1.0;
     }
     while (list.size() < pairs) {
       const auto a = static_cast<std::int32_t>(random() % static_cast<unsigned>(particles));
@@ -60,6 +62,10 @@ struct Sample {
     list.reset_history(history_length);
   }
 
+  double& inverse_radius(std::size_t row) {
+    return (Dim == 2 ? motion
+                     : spin)[row * std::size_t{Dim == 2 ? L::kMotion : 4} + L::kInverseRadius];
+  }
   void start_forces() {
     force.resize(static_cast<std::size_t>(num_rows) * L::kForce);
     for (std::size_t c = 0; c < force.size(); ++c) force[c] = c % 4 < 3 ? kGrain.rounder() : 0.0;

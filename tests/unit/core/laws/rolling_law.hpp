@@ -10,6 +10,7 @@ namespace barchan::test {
 /// of it changes sign when the ends swap.
 struct RollingSpring {
   static constexpr const char* kName = "rolling";
+  static constexpr bool kIsForDisks = true;
 
   enum Field { kRolling = LinearSpring::kNumFields, kNumFields };
   enum Level { kNumLevels = LinearSpring::kNumLevels };
@@ -32,8 +33,7 @@ struct RollingSpring {
   template <class S, int Dim>
   using Force = PairForces<S, Dim>;
 
-  static double row_stiffness(const double* row) { return row[LinearSpring::Kn]; }
-  static double energy(const double* row, const History& history, double overlap,
+  static double energy(const double* row, const History& history, const Overlap& overlap,
                        const double* numbers) {
     double r2 = 0.0;
     const int linear = history.length / 2;

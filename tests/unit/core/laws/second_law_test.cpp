@@ -36,7 +36,7 @@ LawTable rolling_laws(int num_materials, LinearSpring::Level level) {
             ContactConstants c = a < 0 ? ContactConstants{} : linear.at(a, b);
             if (a >= 0 && level != LinearSpring::Constant) c.cn.rate = 10.0, c.ct.rate = 3.0;
             if (a >= 0 && level == LinearSpring::Critical) c.cn.critical = 20.0;
-            LinearSpring::write(c, true, row);
+            LinearSpring::write(c, {}, row);
             row[RollingSpring::kRolling] = a < 0 ? 0.0 : 500.0 + 100.0 * (a + b);
           }};
 }

@@ -71,7 +71,9 @@ TEST(Validate, NamesTheKeyOfWhatNoRunCouldWorkWith) {
       {"material.1.normal_damping", [](Model& m) { m.contacts.constants[0].cn.rate = -1.0; }},
       {"material.1.name", [](Model& m) { m.contacts.constants[1].kn = 2e5; }},
       {"material.1.name", [](Model& m) { m.contacts.constants[1].ct.constant = 1.0; }},
-      {"contact", [](Model& m) { m.contacts.law = 1; }},
+      {"contact", [](Model& m) { m.contacts.law = 99; }},
+      {"contact.model", [](Model& m) { m.contacts.law = 1; }},  // disks have no Hertz law
+      {"contact.reference_speed", [](Model& m) { m.contacts.reference_speed = 0.0; }},
       {"bond.1.name", [](Model& m) { m.bond_laws[0].young_modulus = 0.0; }},
       {"bond.1.radius_factor", [](Model& m) { m.bond_laws[0].radius_factor = 0.0; }},
       {"wall.1.normal", [](Model& m) { m.walls[0].normal = Vec3(0, -2, 0); }},

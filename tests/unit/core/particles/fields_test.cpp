@@ -64,7 +64,8 @@ void expect_fields_apart() {
   EXPECT_EQ(places.size(), static_cast<std::size_t>(numbers));
   int has = 0;
   for_each_array<Dim>([&](const auto& array) { has += array.width; });
-  EXPECT_EQ(numbers, has - 1) << "all but the cell, which follows from the position";
+  EXPECT_EQ(numbers, has - 2) << "all but the cell, which follows from the position, and 1/r, "
+                                 "which follows from the radius";
 }
 
 TEST(Fields, CoverEveryNumberOfARowOnce) {
