@@ -9,6 +9,7 @@
 #include <barchan/comm/topology/strips.hpp>
 #include <barchan/core/base/error.hpp>
 #include <barchan/core/generators/close_pairs.hpp>
+#include <barchan/core/model/contact_range.hpp>
 #include <barchan/tasks/forecast.hpp>
 
 namespace barchan {
@@ -51,7 +52,9 @@ StripPlan plan_for(const Model& model, const ParticleSet& set) {
 double search_reach(const Model& model, const ParticleSet& particles, double skin) {
   double largest = 0.0;
   for (const ParticleData& p : particles.particles) largest = std::max(largest, p.radius);
-  return std::max(2.0 * largest, kBondStretch * longest_bond(model, particles)) + skin;
+  return std::max(2.0 * largest + contact_range(model.contacts, largest),
+                  kBondStretch * longest_bond(model, particles)) +
+         skin;
 }
 
 template <int Dim>

@@ -1,5 +1,6 @@
 #include <barchan/tasks/world_setup.hpp>
 
+#include <barchan/core/model/contact_range.hpp>
 #include <barchan/tasks/forecast.hpp>
 #include <barchan/tasks/strip_plan.hpp>
 
@@ -16,6 +17,7 @@ template <int Dim>
 World<Dim> make_world(const Model& model, const WorldScale& scale, VectorWidth width) {
   World<Dim> world;
   world.skin = scale.skin;
+  world.range = contact_range_within(model.contacts, scale.reach - scale.skin);
   world.dt = model.time.step;
   world.search = model.search.kind;
   world.num_particles = scale.num_particles;

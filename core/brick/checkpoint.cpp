@@ -44,10 +44,10 @@ void restore_particles(const CheckpointShare& share, ParticleStore<Dim>& store) 
   for (std::int32_t row = 0; row < n; ++row) store.set_radius(row, store.radius(row));
 }
 
-/// Of squared distances and of distances: what touches, and a little more for rounding.
+/// Of squared distances and of distances: what may hold, and a little more for rounding.
 constexpr double kTouching = 1.0 + 1e-9;
 
-/// Those that touch. Others lose their history in the next step anyway, and may be farther apart
+/// Those that may hold. Others lose their history in the next step anyway, and may be farther apart
 /// than the lists of a restart reach.
 template <int Dim>
 void save_contacts(const Brick<Dim>& brick, const PairList& list, const PairBlock& block,
@@ -60,7 +60,7 @@ void save_contacts(const Brick<Dim>& brick, const PairList& list, const PairBloc
       has_history = has_history || numbers[c * kBatch] != 0.0;
     if (!has_history) return;
     const std::int32_t i = list.i[k], j = list.j[k];
-    const double reach = store.radius(i) + store.radius(j);
+    const double reach = store.radius(i) + store.radius(j) + brick.world->range;
     if (distance2<Dim>(box, store.x(i), store.x(j)) > kTouching * reach * reach) return;
     for (const std::int32_t end : {i, j})
       share.contact_ids.push_back(store.id[static_cast<std::size_t>(end)]);
@@ -77,7 +77,7 @@ void save_walls(const Brick<Dim>& brick, CheckpointShare& share) {
     const auto w = static_cast<std::size_t>(c.wall);
     if (!has_history(c) ||
         world.wall_shapes[w].foot(world.walls[w].point, c.image, store.x(c.row)).distance >
-            kTouching * store.radius(c.row))
+            kTouching * (store.radius(c.row) + world.range))
       continue;
     share.wall_contact_ids.push_back(store.id[static_cast<std::size_t>(c.row)]);
     share.wall_contact_walls.push_back(c.wall);

@@ -111,9 +111,9 @@ void HistoryCarry<Dim>::put_back(std::span<const std::int32_t> new_row) {
 
 /// Fast ones may have parted in the last step by more than the skin: nothing is lost then.
 template <int Dim>
-bool HistoryCarry<Dim>::touch(std::int32_t a, std::int32_t b) const {
+bool HistoryCarry<Dim>::may_hold(std::int32_t a, std::int32_t b) const {
   const ParticleStore<Dim>& store = brick_.store;
-  const double reach = store.radius(a) + store.radius(b);
+  const double reach = store.radius(a) + store.radius(b) + brick_.world->range;
   return distance2<Dim>(brick_.world->grid.box(), store.x(a), store.x(b)) < reach * reach;
 }
 
@@ -125,7 +125,7 @@ void HistoryCarry<Dim>::put_back_kept(std::span<const std::int32_t> new_row) {
                        b = new_row[static_cast<std::size_t>(kept_.rows[k][1])];
     const PairPlace at = owned_place(brick_, std::min(a, b), std::max(a, b));
     if (at.list != nullptr) put(at, a > b, kept_.history(k));
-    if (at.list != nullptr || !touch(a, b)) ++imbalance_.contacts;
+    if (at.list != nullptr || !may_hold(a, b)) ++imbalance_.contacts;
   }
 }
 
@@ -136,7 +136,7 @@ void HistoryCarry<Dim>::put_back_loose(std::span<const std::int32_t> new_row) {
     const std::int32_t row = new_row[static_cast<std::size_t>(c.handle)];
     const std::int32_t partner = find_near(row, c.partner);
     // Of two that parted, both ends come here; the lower id counts.
-    if ((partner < 0 || (!place(row, partner, loose_.history(k)) && !touch(row, partner))) &&
+    if ((partner < 0 || (!place(row, partner, loose_.history(k)) && !may_hold(row, partner))) &&
         brick_.store.id[static_cast<std::size_t>(row)] < c.partner)
       ++imbalance_.contacts;
   }
@@ -148,18 +148,18 @@ void HistoryCarry<Dim>::put_back_walls(std::span<const std::int32_t> new_row) {
   for (WallContact<Dim>& c : walls_) c.row = new_row[static_cast<std::size_t>(c.row)];
   std::sort(walls_.begin(), walls_.end(),
             [](const auto& p, const auto& q) { return key_of(p) < key_of(q); });
-  const auto touches = [&](const WallContact<Dim>& c) {
+  const auto holds = [&](const WallContact<Dim>& c) {
     const auto w = static_cast<std::size_t>(c.wall);
     const WallFoot foot =
         world.wall_shapes[w].foot(world.walls[w].point, c.image, brick_.store.x(c.row));
-    return foot.distance < brick_.store.radius(c.row);
+    return foot.distance < brick_.store.radius(c.row) + world.range;
   };
   auto now = brick_.walls.list().begin();
   const auto end = brick_.walls.list().end();
   for (const WallContact<Dim>& old : walls_) {
     while (now != end && key_of(*now) < key_of(old)) ++now;
     const bool is_listed = now != end && key_of(*now) == key_of(old);
-    if (!has_history(old) || (is_listed ? loses(Loss::WallContact) : touches(old))) continue;
+    if (!has_history(old) || (is_listed ? loses(Loss::WallContact) : holds(old))) continue;
     if (is_listed) std::copy_n(old.history, int{kLongestHistory<Dim>}, now->history);
     ++imbalance_.wall_contacts;
   }

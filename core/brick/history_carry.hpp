@@ -87,7 +87,7 @@ class HistoryCarry {
   bool place(std::int32_t a, std::int32_t b, const double* history);
   void put(const PairPlace& at, bool is_swapped, const double* history) const;
   [[nodiscard]] std::int32_t find_near(std::int32_t row, std::int64_t id) const;
-  [[nodiscard]] bool touch(std::int32_t a, std::int32_t b) const;
+  [[nodiscard]] bool may_hold(std::int32_t a, std::int32_t b) const;
 
   Brick<Dim>& brick_;
   HistoryTable<std::array<std::int32_t, 2>> kept_;  ///< by source rows

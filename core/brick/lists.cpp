@@ -81,7 +81,8 @@ void Lists<Dim>::list_bonded() {
 template <int Dim>
 SearchRule Lists<Dim>::rule() const {
   const World<Dim>& world = *brick_.world;
-  return {world.skin, world.search, &world.laws, &brick_.bonded, world.kernels.search};
+  return {world.skin + world.range, world.search, &world.laws, &brick_.bonded,
+          world.kernels.search};
 }
 
 template <int Dim>

@@ -101,7 +101,7 @@ void pick_touching(const Brick<Dim>& brick, PairList& list, PairBlock& block, do
   if (!block.is_packed || travel > block.packed_until) {
     std::array<std::uint8_t, kBlockPairs / kBatch> masks;
     const double margin = std::sqrt(brick.world->skin * brick.step_travel);
-    brick.world->kernels.narrow(job, margin, masks.data());
+    brick.world->kernels.narrow(job, margin + brick.world->range, masks.data());
     with_length<Dim>(list.history_length, [&](auto length) {
       pack(length, list, block, masks.data(), brick.store.waste());
     });

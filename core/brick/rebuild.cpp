@@ -277,7 +277,7 @@ void Rebuild<Dim>::take_ghosts(std::span<const std::byte> left, std::span<const 
 template <int Dim>
 void Rebuild<Dim>::restore_history() {
   const World<Dim>& world = *brick_.world;
-  brick_.walls.search(brick_.store, world.wall_view(), world.skin);
+  brick_.walls.search(brick_.store, world.wall_view(), world.skin + world.range);
   carry_.put_back(new_row_);
   BondSet<Dim>& bonds = brick_.bonds;
   bonds.resolve(brick_.store);

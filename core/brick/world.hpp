@@ -34,7 +34,8 @@ struct World {
   std::vector<WallShape<Dim>> wall_shapes;
   std::vector<WallState> walls;
   ContactSearchKind search = ContactSearchKind::Cells;
-  double skin = 0.0;  ///< that the next lists get [m]
+  double skin = 0.0;   ///< that the next lists get [m]
+  double range = 0.0;  ///< beyond touch, up to which the law's contacts may hold [m]
   /// Half of the smallest radius: where nothing moves farther in a step, no contact is skipped [m].
   double quick_travel = std::numeric_limits<double>::infinity();
   double dt = 0.0;  ///< [s]
@@ -67,7 +68,7 @@ struct World {
       state.is_active = spec.from_stage <= 0;
     }
   }
-  [[nodiscard]] WallView<Dim> wall_view() const { return {wall_specs, wall_shapes, walls}; }
+  [[nodiscard]] WallView<Dim> wall_view() const { return {wall_specs, wall_shapes, walls, range}; }
 };
 
 /// Every so many steps comes what must not depend on when lists are rebuilt: positions go around

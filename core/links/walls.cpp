@@ -72,7 +72,7 @@ void WallSums::add(const WallSums& other) {
 
 template <int Dim>
 void WallContacts<Dim>::search(const ParticleStore<Dim>& store, const WallView<Dim>& walls,
-                               double skin) {
+                               double beyond) {
   list_.clear();
   loaded_.clear();
   for (std::int32_t row = 0; row < store.num_owned; ++row) {
@@ -81,7 +81,7 @@ void WallContacts<Dim>::search(const ParticleStore<Dim>& store, const WallView<D
       const bool is_loaded = walls.specs[w].is_loaded;
       if (!walls.states[w].is_active || (is_fixed && !is_loaded)) continue;
       walls.shapes[w].for_each_near(
-          walls.states[w].point, store.x(row), store.radius(row) + skin,
+          walls.states[w].point, store.x(row), store.radius(row) + beyond,
           [&](const WallImage& image) {
             if (is_loaded) loaded_.push_back(list_.size());
             list_.push_back({row, static_cast<std::int32_t>(w), image, {}});
@@ -122,7 +122,7 @@ const WallContact<Dim>* WallContacts<Dim>::felt_instead(const ParticleStore<Dim>
                                                         const WallFoot& foot) const {
   const std::int32_t row = list_[place].row;
   const double radius = store.radius(row), near = kMeets * radius;
-  if (foot.inside > near || foot.distance >= radius) return nullptr;
+  if (foot.inside > near || foot.distance >= radius + walls.range) return nullptr;
   double at[Dim];  // the foot
   for (int c = 0; c < Dim; ++c) at[c] = store.x(row)[c] + foot.to_foot[c];
   std::size_t k = place;

@@ -63,6 +63,7 @@ struct WallView {
   std::span<const WallSpec> specs;
   std::span<const WallShape<Dim>> shapes;
   std::span<const WallState> states;
+  double range = 0.0;  ///< beyond touch, up to which contacts may hold [m]
 };
 
 /// A wall is a particle of radius 0 at its point nearest to the particle, and of infinite mass
@@ -85,9 +86,9 @@ struct WallView {
 template <int Dim>
 class WallContacts {
  public:
-  /// Lists rows within `skin` of an active wall, ordered by row, wall, image. A fixed particle
-  /// touches loaded plates only: there alone its force is of use.
-  void search(const ParticleStore<Dim>& store, const WallView<Dim>& walls, double skin);
+  /// Lists rows that lack less than `beyond` to touch an active wall, by row, wall, image. A fixed
+  /// particle touches loaded plates only: there alone its force is of use.
+  void search(const ParticleStore<Dim>& store, const WallView<Dim>& walls, double beyond);
   /// Before positions of these rows are wrapped into the box: images as seen from there.
   void foresee_wrap(const ParticleStore<Dim>& store, const Grid<Dim>& grid,
                     std::span<const WallShape<Dim>> shapes, Rows rows);

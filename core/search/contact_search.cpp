@@ -43,7 +43,7 @@ void ContactSearch<Dim>::scan(SearchJob& job, std::int32_t i, std::span<const Ro
                               PairList& list, std::int64_t& size) const {
   std::copy_n(store_.x(i), Dim, job.at);
   grid_.wrap(job.at);
-  job.reach = store_.radius(i) + rule_.skin;
+  job.reach = store_.radius(i) + rule_.beyond;
   std::int64_t most = size + kBatch;
   for (const Rows rows : partners) most += rows.end - rows.begin;
   list.make_room(most);

@@ -25,14 +25,15 @@ struct Planes {
 
 /// What decides whether a pair is a candidate, and which law it gets.
 struct SearchRule {
-  double skin = 0.0;  ///< [m]
+  double beyond = 0.0;  ///< touch: skin, and range of the law [m]
   ContactSearchKind kind = ContactSearchKind::Cells;
   const LawTable* laws = nullptr;
   const BondedPairs* bonded = nullptr;
   SearchKernel kernel = nullptr;
 };
 
-/// Candidates: pairs closer than r_i + r_j + skin, lower row first, sorted by both rows.
+/// Candidates: pairs closer than r_i + r_j + SearchRule::beyond, lower row first, sorted by both
+/// rows.
 /// Pairs of two fixed particles are left out; a bonded pair gets the null law.
 ///
 /// `AllPairs` looks at every pair and is the reference; `Cells` finds the same pairs in linear
