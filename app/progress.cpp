@@ -47,7 +47,7 @@ std::int64_t Progress::most_steps() {
 
 void Progress::update() {
   if (is_silent_ || !simulation_.communicator().is_root()) return;
-  const double now = std::chrono::duration<double>(Clock::now() - begin_).count();
+  const double now = seconds_since(begin_);
   if (now - last_seconds_ >= 0.9 * interval_) print(now);
 }
 

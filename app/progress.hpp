@@ -1,8 +1,8 @@
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 
+#include <barchan/core/base/clock.hpp>
 #include <barchan/tasks/simulation.hpp>
 
 namespace barchan::app {
@@ -19,14 +19,13 @@ class Progress {
   void clear();  ///< leaves an empty line on a terminal
 
  private:
-  using Clock = std::chrono::steady_clock;
   void print(double now);
 
   const Simulation& simulation_;
   bool is_silent_;    ///< all ranks alike
   bool is_terminal_;  ///< rank 0 knows
   double interval_;   ///< [s]
-  Clock::time_point begin_ = Clock::now();
+  std::int64_t begin_ = now_ns();
   double last_seconds_ = 0.0, last_loop_ = 0.0;  ///< at the last line
   std::int64_t last_step_;
   bool has_line_ = false;

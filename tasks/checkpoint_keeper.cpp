@@ -82,7 +82,7 @@ bool CheckpointKeeper::is_due(std::int64_t step) const {
 
 bool CheckpointKeeper::is_overdue() const {
   if (!communicator_.is_root() || spec_.every_seconds <= 0.0) return false;
-  return 1e-9 * static_cast<double>(now_ns() - last_time_) >= spec_.every_seconds;
+  return seconds_since(last_time_) >= spec_.every_seconds;
 }
 
 CheckpointCopy& CheckpointKeeper::begin() {

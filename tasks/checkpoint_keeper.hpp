@@ -6,8 +6,8 @@
 #include <thread>
 #include <vector>
 
-#include <barchan/comm/base/clock.hpp>
 #include <barchan/comm/base/reduction.hpp>
+#include <barchan/core/base/clock.hpp>
 #include <barchan/core/checkpoint/checkpoint_folder.hpp>
 #include <barchan/core/model/model.hpp>
 #include <barchan/core/particles/share.hpp>

@@ -6,25 +6,17 @@
 
 #include <fmt/format.h>
 
-#include <barchan/comm/base/clock.hpp>
 #include <barchan/comm/base/mpi_session.hpp>
+#include <barchan/core/base/clock.hpp>
 #include <barchan/core/base/error.hpp>
 #include <barchan/tasks/appearing_walls.hpp>
 #include <barchan/tasks/exchange_setup.hpp>
 #include <barchan/tasks/forecast.hpp>
 #include <barchan/tasks/parts_checkpoint.hpp>
-#include <barchan/tasks/stability.hpp>
 #include <barchan/tasks/stop_request.hpp>
 #include <barchan/tasks/wrong_step.hpp>
 
 namespace barchan {
-namespace {
-
-double seconds_since(std::int64_t begin) {
-  return 1e-9 * static_cast<double>(now_ns() - begin);
-}
-
-}  // namespace
 
 template <int Dim>
 Simulation::EngineOf<Dim>::EngineOf(const Model& model, Communicator communicator,

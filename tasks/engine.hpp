@@ -48,6 +48,9 @@ class Simulation::Engine {
     if (options_.threads <= 0) options_.threads = default_threads(communicator_);
   }
 
+  friend class Simulation;
+
+ protected:
   const Model model_;
   RunOptions options_;
   Communicator communicator_;

@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include <barchan/comm/base/clock.hpp>
+#include <barchan/core/base/clock.hpp>
 #include <barchan/core/brick/measure.hpp>
 
 namespace barchan {
@@ -129,7 +129,7 @@ void ListsKeeper<Dim>::renew(std::int64_t step) {
   schedule_.rebuilt(step);
   is_demanded_ = false;
   const std::int64_t end = now_ns();
-  seconds_ += 1e-9 * static_cast<double>(end - begin);
+  seconds_ += to_seconds(end - begin);
   if (run_.strip.trace() != nullptr)
     run_.strip.trace()->slice(Trace::Slice::Rebuild, 0, begin, end);
 }

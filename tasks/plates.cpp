@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <barchan/comm/base/clock.hpp>
+#include <barchan/core/base/clock.hpp>
 
 namespace barchan {
 namespace {
@@ -79,7 +79,7 @@ Vec3 Plates::force_on(std::size_t plate) const {
 void Plates::kick(std::span<WallState> states, int appears_in, std::span<WallSums> works) {
   const std::int64_t begin = now_ns();
   reduction_->wait();
-  wait_seconds_ += 1e-9 * static_cast<double>(now_ns() - begin);
+  wait_seconds_ += seconds_since(begin);
   for (std::size_t p = 0; p < loaded_.size(); ++p) {
     const std::size_t w = loaded_[p];
     if (!states[w].is_active) continue;

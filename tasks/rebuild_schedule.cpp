@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <barchan/comm/base/clock.hpp>
+#include <barchan/core/base/clock.hpp>
 
 namespace barchan {
 namespace {
@@ -72,7 +72,7 @@ void RebuildSchedule::poll() {
 void RebuildSchedule::wait() {
   const std::int64_t begin = now_ns();
   reduction_.wait();
-  wait_seconds_ += 1e-9 * static_cast<double>(now_ns() - begin);
+  wait_seconds_ += seconds_since(begin);
 }
 
 CheckNumbers RebuildSchedule::numbers() const {

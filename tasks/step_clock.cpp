@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <barchan/comm/base/clock.hpp>
+#include <barchan/core/base/clock.hpp>
 
 namespace barchan {
 

@@ -6,7 +6,8 @@
 #include <string>
 #include <thread>
 
-#include <barchan/comm/base/clock.hpp>
+#include <barchan/core/base/clock.hpp>
+#include <barchan/core/base/random.hpp>
 #include <barchan/core/brick/diagnose.hpp>
 
 namespace barchan {
@@ -34,8 +35,7 @@ StepGraph<Dim>::StepGraph(Strip<Dim>& strip, const RunOptions& options)
       clock_(strip.num_lanes()),
       shape_(shape_of(strip, options.schedule)),
       steps_(static_cast<std::size_t>(strip.num_lanes())),
-      max_task_delay_(options.hooks.max_delay_seconds),
-      delay_state_(options.hooks.delay_seed * 2 + 1),
+      delays_(options.hooks),
       graph_(step_tasks(shape_), options.threads,
              [this](const StepTask& task, int parity) { do_task(task, parity); }),
       awaits_right_(graph_.list().find({Work::AwaitRight}) >= 0),
@@ -168,13 +168,11 @@ void StepGraph<Dim>::require_all_steps() const {
 
 template <int Dim>
 void StepGraph<Dim>::maybe_delay() {
-  if (max_task_delay_ <= 0.0) return;
-  std::uint64_t s = delay_state_.fetch_add(0x9e3779b97f4a7c15U) + 0x9e3779b97f4a7c15U;
-  s = (s ^ (s >> 30)) * 0xbf58476d1ce4e5b9U;
-  s = (s ^ (s >> 27)) * 0x94d049bb133111ebU;
-  if ((s & 7U) != 0) return;  // one task in eight
+  if (delays_.max_delay_seconds <= 0.0) return;
+  CounterRandom random(delays_.delay_seed, ++num_delays_);
+  if (random.bits() % 8 != 0) return;  // one task in eight
   std::this_thread::sleep_for(
-      std::chrono::duration<double>(max_task_delay_ * static_cast<double>(s >> 40) * 0x1p-24));
+      std::chrono::duration<double>(random.uniform(0.0, delays_.max_delay_seconds)));
 }
 
 template <int Dim>

@@ -56,8 +56,8 @@ class StepGraph {
   int num_steps_ = 1;       ///< of this run
   int parity_ = 0;          ///< of its first step
   std::vector<int> steps_;  ///< that a lane has done of the run
-  double max_task_delay_;
-  std::atomic<std::uint64_t> delay_state_;
+  ExchangeHooks delays_;    ///< of tests
+  std::atomic<std::uint64_t> num_delays_{0};
   TaskGraph graph_;
   bool awaits_right_;  ///< in a task of its own
   int begin_;          ///< index of a task, as what follows

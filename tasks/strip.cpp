@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include <barchan/comm/base/clock.hpp>
 #include <barchan/comm/base/watchdog.hpp>
 #include <barchan/comm/topology/links.hpp>
+#include <barchan/core/base/clock.hpp>
 #include <barchan/core/base/error.hpp>
 #include <barchan/core/brick/halo.hpp>
 

@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
-#include <barchan/comm/base/clock.hpp>
 #include <barchan/comm/base/tape.hpp>
 #include <barchan/comm/base/watchdog.hpp>
 #include <barchan/comm/topology/strips.hpp>
+#include <barchan/core/base/clock.hpp>
 #include <barchan/core/brick/checkpoint.hpp>
 #include <barchan/tasks/strip_plan.hpp>
 #include <barchan/tasks/strip_seed.hpp>
@@ -81,7 +81,7 @@ template <int Dim>
 void StripRebuild<Dim>::count_wait(double& seconds, Trace::Slice name, std::int64_t begin,
                                    std::int64_t posted) {
   const std::int64_t end = now_ns();
-  seconds += 1e-9 * static_cast<double>(end - begin);
+  seconds += to_seconds(end - begin);
   waits_.late +=
       1e-9 * static_cast<double>(std::clamp<std::int64_t>(posted - begin, 0, end - begin));
   if (strip_.trace() != nullptr) strip_.trace()->slice(name, 0, begin, end);
@@ -199,7 +199,7 @@ void StripRebuild<Dim>::wait_bulk(const char* what, double& seconds, Trace::Slic
         return fmt::format("rank {}: {} of step {} {}", strip_.communicator().rank(), what,
                            strip_.step, from);
       });
-  waits_.in_flight += 1e-9 * static_cast<double>(now_ns() - bulk_begin_);
+  waits_.in_flight += seconds_since(bulk_begin_);
   std::int64_t posted = 0;
   for (const Side side : kSides) {
     if (strip_.shares_clock(side)) posted = std::max(posted, strip_.exchange()->bulk_posted(side));

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <barchan/comm/base/clock.hpp>
 #include <barchan/comm/base/communicator.hpp>
 #include <barchan/comm/topology/neighbours.hpp>
+#include <barchan/core/base/clock.hpp>
 
 namespace barchan {
 

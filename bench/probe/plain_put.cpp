@@ -16,7 +16,7 @@
 
 namespace {
 
-constexpr int word_bytes = 64;  // a cache line before the data
+constexpr int kWordBytes = 64;  // a cache line before the data
 constexpr int num_first = 20;   // round trips that do not count
 
 struct PingPong {
@@ -29,7 +29,7 @@ struct PingPong {
   void put() {
     ++number;
     const int bytes = static_cast<int>(data.size());
-    MPI_Put(data.data(), bytes, MPI_BYTE, other, word_bytes, bytes, MPI_BYTE, window);
+    MPI_Put(data.data(), bytes, MPI_BYTE, other, kWordBytes, bytes, MPI_BYTE, window);
     MPI_Win_flush(other, window);
     MPI_Put(&number, 8, MPI_BYTE, other, 0, 8, MPI_BYTE, window);
     MPI_Win_flush(other, window);
@@ -51,9 +51,9 @@ double half_round_trip(int bytes, int num_trips) {
   PingPong game{};
   game.other = 1 - rank;
   game.data.resize(static_cast<std::size_t>(bytes));
-  MPI_Win_allocate(word_bytes + bytes, 1, MPI_INFO_NULL, MPI_COMM_WORLD, &game.mine, &game.window);
+  MPI_Win_allocate(kWordBytes + bytes, 1, MPI_INFO_NULL, MPI_COMM_WORLD, &game.mine, &game.window);
   MPI_Win_lock_all(MPI_MODE_NOCHECK, game.window);
-  std::fill_n(game.mine, word_bytes + bytes, std::byte{});
+  std::fill_n(game.mine, kWordBytes + bytes, std::byte{});
   MPI_Win_sync(game.window);
   MPI_Barrier(MPI_COMM_WORLD);
   std::vector<double> times;

@@ -12,19 +12,19 @@ namespace barchan {
 /// time slice.
 class Backoff {
  public:
-  static constexpr int num_spins = 300;
-  static constexpr int num_yields = 3000;
-  static constexpr std::chrono::microseconds nap{50};
+  static constexpr int kNumSpins = 300;
+  static constexpr int kNumYields = 3000;
+  static constexpr std::chrono::microseconds kNap{50};
 
   /// Once after each empty poll.
   void pause() {
-    if (num_pauses_ < num_spins) {
+    if (num_pauses_ < kNumSpins) {
       ++num_pauses_;
-    } else if (num_pauses_ < num_spins + num_yields) {
+    } else if (num_pauses_ < kNumSpins + kNumYields) {
       ++num_pauses_;
       sched_yield();
     } else {
-      std::this_thread::sleep_for(nap);
+      std::this_thread::sleep_for(kNap);
     }
   }
 

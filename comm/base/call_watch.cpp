@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
@@ -17,21 +18,21 @@ namespace barchan {
 namespace {
 
 /// The limit is over for all ranks at about the same time; each has time for its words.
-constexpr std::chrono::seconds last_words{5};
-constexpr double longest_nap = 5.0;  // s
+constexpr std::chrono::seconds kLastWords{5};
+constexpr double kLongestNap = 5.0;  // s
 
 /// A wrong BARCHAN_WAIT_LIMIT is told by those who can.
 double limit_or_default() {
   try {
     return wait_limit();
   } catch (const InputError&) {
-    return default_wait_limit;
+    return kDefaultWaitLimit;
   }
 }
 
 /// Between two looks at the clock [s].
 double nap() {
-  return std::min(0.1 * limit_or_default(), longest_nap);
+  return std::min(0.1 * limit_or_default(), kLongestNap);
 }
 
 /// In MPI_COMM_WORLD, which no call of MPI is worth twice; before MPI_Init: -1.
@@ -82,16 +83,13 @@ class CallWatcher {
 
   /// Seconds, less those in which the process was stopped: after them it is not for this rank to
   /// say who hangs. With the lock held.
-  double now() const {
-    const std::chrono::duration<double> since = std::chrono::steady_clock::now() - looked_;
-    return awake_ + std::min(since.count(), 2.0 * nap());
-  }
+  double now() const { return awake_ + std::min(seconds_since(looked_), 2.0 * nap()); }
 
   void look() {
     std::unique_lock lock(mutex_);
     while (!is_over_) {
       awake_ = now();
-      looked_ = std::chrono::steady_clock::now();
+      looked_ = now_ns();
       for (const CallWatch* watch = first_; watch != nullptr; watch = watch->after_) {
         const double waited = awake_ - watch->begin_;
         if (waited > watch->patience_ * limit_or_default()) end(*watch, waited);
@@ -107,14 +105,14 @@ class CallWatcher {
     const std::string what = who + ": " + watch.call_ + ", in which other ranks take part";
     std::fprintf(stderr, "barchan: %s\n", words_of_wait(seconds, what).c_str());
     std::fflush(stderr);
-    std::this_thread::sleep_for(last_words);
+    std::this_thread::sleep_for(kLastWords);
     std::_Exit(EXIT_FAILURE);
   }
 
   std::mutex mutex_;
   std::condition_variable over_;
   bool is_over_ = false;
-  std::chrono::steady_clock::time_point looked_ = std::chrono::steady_clock::now();
+  std::int64_t looked_ = now_ns();
   double awake_ = 0.0;  ///< when it looked, by now()
   CallWatch* first_ = nullptr;
   std::thread thread_;  ///< last: it looks at all the others

@@ -13,14 +13,14 @@
 namespace barchan {
 namespace {
 
-constexpr std::size_t largest_piece = std::size_t{1} << 30;  // MPI-3 counts are ints
-constexpr int gather_tag = 1;
+constexpr std::size_t kLargestPiece = std::size_t{1} << 30;  // MPI-3 counts are ints
+constexpr int kGatherTag = 1;
 
 // Calls move(offset, count) for pieces that fit an MPI count.
 template <class Move>
 void for_pieces(std::size_t bytes, Move move) {
-  for (std::size_t offset = 0; offset < bytes; offset += largest_piece) {
-    move(offset, mpi_count(std::min(largest_piece, bytes - offset)));
+  for (std::size_t offset = 0; offset < bytes; offset += kLargestPiece) {
+    move(offset, mpi_count(std::min(kLargestPiece, bytes - offset)));
   }
 }
 
@@ -179,7 +179,7 @@ std::vector<std::vector<std::byte>> Communicator::gather(std::span<const std::by
   await(request, "what all ranks send to rank 0");
   if (!is_root()) {
     for_pieces(mine.size(), [&](std::size_t offset, int count) {
-      check(MPI_Isend(mine.data() + offset, count, MPI_BYTE, 0, gather_tag, comm_, &request),
+      check(MPI_Isend(mine.data() + offset, count, MPI_BYTE, 0, kGatherTag, comm_, &request),
             "MPI_Isend");
       await(request, "rank 0 to receive its part");
     });
@@ -191,7 +191,7 @@ std::vector<std::vector<std::byte>> Communicator::gather(std::span<const std::by
     auto& theirs = all[static_cast<std::size_t>(source)];
     theirs.resize(lengths[static_cast<std::size_t>(source)]);
     for_pieces(theirs.size(), [&](std::size_t offset, int count) {
-      check(MPI_Irecv(theirs.data() + offset, count, MPI_BYTE, source, gather_tag, comm_, &request),
+      check(MPI_Irecv(theirs.data() + offset, count, MPI_BYTE, source, kGatherTag, comm_, &request),
             "MPI_Irecv");
       await(request, "the part of rank " + std::to_string(source));
     });

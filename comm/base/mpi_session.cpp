@@ -11,7 +11,7 @@
 namespace barchan {
 namespace {
 
-constexpr double patience = 10.0;  // wait limits: others may still be started, or write files
+constexpr double kPatience = 10.0;  // wait limits: others may still be started, or write files
 
 /// MPICH before 4.2 over UCX: a rank that has taken its leave waits in MPI_Finalize without moving
 /// messages, so one that is slower by then waits for ever (pmodels/mpich #6596). Seldom where all
@@ -20,12 +20,12 @@ constexpr double patience = 10.0;  // wait limits: others may still be started, 
 double leave_together() {
 #if defined(MPICH_NUMVERSION) && MPICH_NUMVERSION < 40200000
   constexpr std::chrono::milliseconds pause{20};
-  const CallWatch watch("MPI_Barrier", patience);
+  const CallWatch watch("MPI_Barrier", kPatience);
   MPI_Barrier(MPI_COMM_WORLD);
   std::this_thread::sleep_for(pause);
   return 0.5;  // nothing is left to be done
 #else
-  return patience;
+  return kPatience;
 #endif
 }
 
@@ -42,7 +42,7 @@ void MpiSession::start(int* argc, char*** argv) {
   if (is_mpi_initialized()) return;
   int provided = MPI_THREAD_SINGLE;
   {
-    const CallWatch watch("MPI_Init_thread", patience);
+    const CallWatch watch("MPI_Init_thread", kPatience);
     check(MPI_Init_thread(argc, argv, MPI_THREAD_SERIALIZED, &provided), "MPI_Init_thread");
   }
   is_owner_ = true;

@@ -19,8 +19,8 @@ namespace barchan {
 namespace {
 
 // A record in words of 8 bytes:   | number of maxima | number of words | maxima ... | sums ... |
-constexpr std::size_t first_value = 2;
-constexpr int direct_tag = 2;
+constexpr std::size_t kFirstValue = 2;
+constexpr int kDirectTag = 2;
 
 double exact_max(double a, double b) {
   if (std::isnan(a) || std::isnan(b)) return std::numeric_limits<double>::quiet_NaN();
@@ -30,11 +30,11 @@ double exact_max(double a, double b) {
 void fold(const std::uint64_t* theirs, std::uint64_t* mine) {
   const std::uint64_t num_maxima = mine[0];
   const std::uint64_t num_words = mine[1];
-  for (std::uint64_t word = first_value; word < first_value + num_maxima; ++word) {
+  for (std::uint64_t word = kFirstValue; word < kFirstValue + num_maxima; ++word) {
     mine[word] = std::bit_cast<std::uint64_t>(
         exact_max(std::bit_cast<double>(theirs[word]), std::bit_cast<double>(mine[word])));
   }
-  for (std::uint64_t word = first_value + num_maxima; word < num_words; ++word)
+  for (std::uint64_t word = kFirstValue + num_maxima; word < num_words; ++word)
     mine[word] += theirs[word];
 }
 
@@ -57,7 +57,7 @@ struct Reduction::State {
         num_maxima(maxima),
         num_sums(sums),
         is_direct(communicator.size() <= num_direct_ranks),
-        mine(first_value + maxima + sums),
+        mine(kFirstValue + maxima + sums),
         result(mine.size()),
         result_maxima(maxima),
         result_sums(sums),
@@ -82,10 +82,10 @@ struct Reduction::State {
     std::size_t other = 0;
     for (int rank = 0; rank < communicator.size(); ++rank) {
       if (rank == communicator.rank()) continue;
-      check(MPI_Recv_init(&theirs[other * mine.size()], bytes, MPI_BYTE, rank, direct_tag,
+      check(MPI_Recv_init(&theirs[other * mine.size()], bytes, MPI_BYTE, rank, kDirectTag,
                           communicator.handle(), &requests[other]),
             "MPI_Recv_init");
-      check(MPI_Send_init(mine.data(), bytes, MPI_BYTE, rank, direct_tag, communicator.handle(),
+      check(MPI_Send_init(mine.data(), bytes, MPI_BYTE, rank, kDirectTag, communicator.handle(),
                           &requests[num_others + other]),
             "MPI_Send_init");
       ++other;
@@ -149,9 +149,9 @@ struct Reduction::State {
       combine();
     }
     for (std::size_t i = 0; i < num_maxima; ++i)
-      result_maxima[i] = std::bit_cast<double>(result[first_value + i]);
+      result_maxima[i] = std::bit_cast<double>(result[kFirstValue + i]);
     for (std::size_t i = 0; i < num_sums; ++i) {
-      result_sums[i] = static_cast<std::int64_t>(result[first_value + num_maxima + i]);
+      result_sums[i] = static_cast<std::int64_t>(result[kFirstValue + num_maxima + i]);
     }
   }
 
@@ -221,10 +221,10 @@ void Reduction::begin(std::span<const double> maxima, std::span<const std::int64
   }
   if (state.is_in_flight) throw std::logic_error("Reduction::begin: the last one is in flight");
   for (std::size_t i = 0; i < maxima.size(); ++i) {
-    state.mine[first_value + i] = std::bit_cast<std::uint64_t>(maxima[i] + 0.0);  // -0 becomes +0
+    state.mine[kFirstValue + i] = std::bit_cast<std::uint64_t>(maxima[i] + 0.0);  // -0 becomes +0
   }
   for (std::size_t i = 0; i < sums.size(); ++i) {
-    state.mine[first_value + maxima.size() + i] = static_cast<std::uint64_t>(sums[i]);
+    state.mine[kFirstValue + maxima.size() + i] = static_cast<std::uint64_t>(sums[i]);
   }
   state.start();
 }

@@ -23,10 +23,10 @@ namespace barchan {
 /// nobody. One thread at a time.
 class Reduction {
  public:
-  static constexpr int default_direct_ranks = 8;
+  static constexpr int kDefaultDirectRanks = 8;
 
   Reduction(const Communicator& communicator, std::size_t num_maxima, std::size_t num_sums,
-            int num_direct_ranks = default_direct_ranks);
+            int num_direct_ranks = kDefaultDirectRanks);
   ~Reduction();
   Reduction(const Reduction&) = delete;
   Reduction& operator=(const Reduction&) = delete;

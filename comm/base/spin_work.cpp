@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include <barchan/comm/base/clock.hpp>
+#include <barchan/core/base/clock.hpp>
 
 namespace barchan {
 

@@ -8,7 +8,7 @@
 namespace barchan {
 namespace {
 
-constexpr std::size_t block_bytes = std::size_t{1} << 20;
+constexpr std::size_t kBlockBytes = std::size_t{1} << 20;
 
 }  // namespace
 
@@ -34,7 +34,7 @@ void Tape::record(int channel, std::span<const std::byte> bytes) {
   Track& mine = track(channel);
   auto& blocks = mine.blocks;  // never grown beyond what was reserved: records point into them
   if (blocks.empty() || blocks.back().capacity() - blocks.back().size() < bytes.size()) {
-    blocks.emplace_back().reserve(std::max(block_bytes, bytes.size()));
+    blocks.emplace_back().reserve(std::max(kBlockBytes, bytes.size()));
   }
   std::vector<std::byte>& block = blocks.back();
   const std::size_t begin = block.size();

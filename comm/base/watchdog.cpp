@@ -14,7 +14,7 @@ namespace {
 
 double limit_of_environment() {
   const char* text = std::getenv("BARCHAN_WAIT_LIMIT");
-  if (text == nullptr || *text == '\0') return default_wait_limit;
+  if (text == nullptr || *text == '\0') return kDefaultWaitLimit;
   double seconds = 0.0;
   const char* end = text + std::strlen(text);
   const auto [stop, error] = std::from_chars(text, end, seconds);

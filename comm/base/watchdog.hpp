@@ -1,14 +1,15 @@
 #pragma once
 
-#include <chrono>
+#include <cstdint>
 #include <string>
 
 #include <barchan/comm/base/backoff.hpp>
+#include <barchan/core/base/clock.hpp>
 #include <barchan/core/base/error.hpp>
 
 namespace barchan {
 
-inline constexpr double default_wait_limit = 120.0;  ///< [s]
+inline constexpr double kDefaultWaitLimit = 120.0;  ///< [s]
 
 /// The longest that a rank waits for one message [s]. The default, or the environment's
 /// BARCHAN_WAIT_LIMIT. Process-wide; set it before the run. Errors: InputError when the variable or
@@ -34,21 +35,18 @@ class WaitError : public RunError {
 class Watchdog {
  public:
   Watchdog() : Watchdog(wait_limit()) {}
-  explicit Watchdog(double limit_seconds)
-      : limit_(limit_seconds), begin_(std::chrono::steady_clock::now()) {}
+  explicit Watchdog(double limit_seconds) : limit_(limit_seconds) {}
 
   /// Cheap: looks at the clock at every 256th call.
   [[nodiscard]] bool has_expired() { return (++num_calls_ & 255U) == 0 && seconds() > limit_; }
-  [[nodiscard]] double seconds() const {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
-  }
+  [[nodiscard]] double seconds() const { return seconds_since(begin_); }
 
   /// Throws WaitError with words_of_wait().
   [[noreturn]] void expire(const std::string& what) const;
 
  private:
   double limit_;
-  std::chrono::steady_clock::time_point begin_;
+  std::int64_t begin_ = now_ns();
   unsigned num_calls_ = 0;
 };
 

@@ -11,7 +11,7 @@
 namespace barchan {
 namespace {
 
-/// Fence, put, fence: one window per lane, and the n-th fence of all ranks closes message n of all.
+/// Fence, put, fence: one window per channel, and the n-th fence of all ranks closes message n of all.
 /// The fence is called by the first poll after both sides have been sent; it waits for every rank,
 /// so this exchange hides little, both sides go in step (no `return` scheme), every rank has a
 /// neighbour, and halo and bulk are not in flight at the same time.
@@ -41,9 +41,9 @@ class Fence final : public SlotExchange {
       window = Window(communicator(), layout_.total());
       close(window, MPI_MODE_NOPRECEDE);
     }
-    for (const Lane lane : {Lane::Halo, Lane::Bulk}) {
+    for (const Channel channel : {Channel::Halo, Channel::Bulk}) {
       for (const Side side : {Side::Left, Side::Right}) {
-        outboxes_[index({lane, side, 0})].resize(slot_bytes(capacity.of(lane)));
+        outboxes_[index({channel, side, 0})].resize(slot_bytes(capacity.of(channel)));
       }
     }
   }
@@ -60,13 +60,13 @@ class Fence final : public SlotExchange {
 
   void post(const MessageKey& key, const MessageHeader& header) override {
     write_header(header, outbox(key));
-    window(key).put({outbox(key), header_bytes + header.bytes}, neighbours().rank(key.side),
+    window(key).put({outbox(key), kHeaderBytes + header.bytes}, neighbours().rank(key.side),
                     layout_.slot(SlotLayout::at_receiver(key)));
     num_posted_[index(key)] = key.number;
   }
 
   const std::byte* arrived(const MessageKey& key) override {
-    std::uint64_t& num_fences = num_fences_[static_cast<std::size_t>(key.lane)];
+    std::uint64_t& num_fences = num_fences_[static_cast<std::size_t>(key.channel)];
     if (num_fences < key.number) {
       if (!has_sent_both(key)) return nullptr;
       close(window(key), 0);
@@ -89,18 +89,18 @@ class Fence final : public SlotExchange {
   }
   [[nodiscard]] bool has_sent_both(const MessageKey& key) const {
     return std::ranges::all_of(std::array{Side::Left, Side::Right}, [&](Side side) {
-      return !neighbours().has(side) || num_posted_[index({key.lane, side, 0})] >= key.number;
+      return !neighbours().has(side) || num_posted_[index({key.channel, side, 0})] >= key.number;
     });
   }
   [[nodiscard]] const Window& window(const MessageKey& key) const {
-    return windows_[static_cast<std::size_t>(key.lane)];
+    return windows_[static_cast<std::size_t>(key.channel)];
   }
 
-  std::array<Window, num_lanes> windows_;
+  std::array<Window, kNumChannels> windows_;
   SlotLayout layout_;
-  std::array<std::vector<std::byte>, num_lane_sides> outboxes_;
-  std::array<std::uint64_t, num_lanes> num_fences_{};
-  std::array<std::uint64_t, num_lane_sides> num_posted_{};
+  std::array<std::vector<std::byte>, kNumChannelSides> outboxes_;
+  std::array<std::uint64_t, kNumChannels> num_fences_{};
+  std::array<std::uint64_t, kNumChannelSides> num_posted_{};
   int num_exceptions_;
 };
 

@@ -34,11 +34,11 @@ class Get final : public OneSidedExchange {
   }
 
  private:
-  static constexpr int length_bits = 40;
-  static constexpr std::uint64_t length_mask = (std::uint64_t{1} << length_bits) - 1;
+  static constexpr int kLengthBits = 40;
+  static constexpr std::uint64_t kLengthMask = (std::uint64_t{1} << kLengthBits) - 1;
 
   static constexpr std::uint64_t announce(std::uint64_t number, std::uint64_t bytes) {
-    return number << length_bits | bytes;
+    return number << kLengthBits | bytes;
   }
 
   bool start(const MessageKey& key) {
@@ -47,10 +47,10 @@ class Get final : public OneSidedExchange {
       if (!is_announced(key)) return false;
     }
     window().sync();
-    const auto bytes = static_cast<std::size_t>(word(key) & length_mask);
-    if (bytes > capacity().of(key.lane))
+    const auto bytes = static_cast<std::size_t>(word(key) & kLengthMask);
+    if (bytes > capacity().of(key.channel))
       throw RunError(describe(key, target(key)) + " is longer than its slot");
-    const int count = mpi_count(header_bytes + bytes);
+    const int count = mpi_count(kHeaderBytes + bytes);
     check(MPI_Rget(local(key), count, MPI_BYTE, target(key),
                    static_cast<MPI_Aint>(layout().slot(SlotLayout::at_receiver(key))), count,
                    MPI_BYTE, window().handle(), &requests_[index(key)]),
@@ -59,11 +59,11 @@ class Get final : public OneSidedExchange {
   }
 
   [[nodiscard]] bool is_announced(const MessageKey& key) const {
-    return word(key) >> length_bits == announce(key.number, 0) >> length_bits;
+    return word(key) >> kLengthBits == announce(key.number, 0) >> kLengthBits;
   }
 
-  std::array<MPI_Request, num_lane_sides> requests_{MPI_REQUEST_NULL, MPI_REQUEST_NULL,
-                                                    MPI_REQUEST_NULL, MPI_REQUEST_NULL};
+  std::array<MPI_Request, kNumChannelSides> requests_{MPI_REQUEST_NULL, MPI_REQUEST_NULL,
+                                                      MPI_REQUEST_NULL, MPI_REQUEST_NULL};
 };
 
 }  // namespace

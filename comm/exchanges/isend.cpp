@@ -26,10 +26,10 @@ class Isend final : public TwoSidedExchange {
  protected:
   void allocate(SlotCapacity capacity) override {
     TwoSidedExchange::allocate(capacity);
-    for (const Lane lane : {Lane::Halo, Lane::Bulk}) {
+    for (const Channel channel : {Channel::Halo, Channel::Bulk}) {
       for (const Side side : {Side::Left, Side::Right}) {
         if (!neighbours().has(side)) continue;
-        for (const std::uint64_t number : {1U, 2U}) receive({lane, side, number});
+        for (const std::uint64_t number : {1U, 2U}) receive({channel, side, number});
       }
     }
   }
@@ -60,14 +60,14 @@ class Isend final : public TwoSidedExchange {
   void receive(const MessageKey& key) {
     Slot& slot = inbox(key);
     check(MPI_Recv_init(slot.memory.data(), mpi_count(slot.memory.size()), MPI_BYTE, neighbour(key),
-                        key.lane_side(), communicator().handle(), &slot.request),
+                        key.channel_side(), communicator().handle(), &slot.request),
           "MPI_Recv_init");
     start(slot);
   }
 
   void withdraw() {
-    for (int position = 0; position < 2 * num_lane_sides; ++position) {
-      const MessageKey key{static_cast<Lane>(position / 4), static_cast<Side>(position / 2 % 2),
+    for (int position = 0; position < 2 * kNumChannelSides; ++position) {
+      const MessageKey key{static_cast<Channel>(position / 4), static_cast<Side>(position / 2 % 2),
                            static_cast<std::uint64_t>(position % 2)};
       Slot& slot = inbox(key);
       if (slot.request == MPI_REQUEST_NULL) continue;

@@ -19,7 +19,7 @@ struct Entry {
   std::unique_ptr<SlotExchange> (*make)(const Communicator&, Neighbours);
 };
 
-constexpr std::array entries{
+constexpr std::array kEntries{
     Entry{"put-flag", "one-sided: put, flush, flag word, flush", make_put_flag},
     Entry{"put-inband", "one-sided: one put; its number and checksum show that it is complete",
           make_put_inband},
@@ -33,12 +33,12 @@ constexpr std::array entries{
 };
 
 const Entry& entry_of(std::string_view name) {
-  for (const Entry& entry : entries) {
+  for (const Entry& entry : kEntries) {
     if (entry.name == name) return entry;
   }
   std::vector<std::string_view> known;
   std::string all;
-  for (const Entry& entry : entries) {
+  for (const Entry& entry : kEntries) {
     known.push_back(entry.name);
     all += (all.empty() ? "" : ", ") + std::string(entry.name);
   }
@@ -85,7 +85,7 @@ void check_exchange_name(std::string_view name) {
 std::string exchanges_here(const Communicator& communicator, Neighbours neighbours) {
   std::string working;
   std::vector<ExchangeObstacle> others;
-  for (const Entry& entry : entries) {
+  for (const Entry& entry : kEntries) {
     try {
       (void)make_plain(entry.name, communicator, neighbours, {});
       working += (working.empty() ? "" : ", ") + std::string(entry.name);
@@ -100,7 +100,7 @@ std::string exchanges_here(const Communicator& communicator, Neighbours neighbou
 
 std::vector<std::string> exchange_names() {
   std::vector<std::string> names;
-  for (const Entry& entry : entries) names.emplace_back(entry.name);
+  for (const Entry& entry : kEntries) names.emplace_back(entry.name);
   return names;
 }
 

@@ -38,9 +38,9 @@ class Pscw final : public SlotExchange {
  protected:
   void allocate(SlotCapacity capacity) override {
     for_slots([&](const MessageKey& key) {
-      window(key) = Window(communicator(), slot_bytes(capacity.of(key.lane)));
+      window(key) = Window(communicator(), slot_bytes(capacity.of(key.channel)));
       expose(key);
-      outboxes_[index(key)].resize(slot_bytes(capacity.of(key.lane)));
+      outboxes_[index(key)].resize(slot_bytes(capacity.of(key.channel)));
     });
   }
 
@@ -65,9 +65,9 @@ class Pscw final : public SlotExchange {
 
   void post(const MessageKey& key, const MessageHeader& header) override {
     write_header(header, outbox(key));
-    const Window& slot = window({key.lane, opposite(key.side), key.number});
+    const Window& slot = window({key.channel, opposite(key.side), key.number});
     start(slot, key.side);
-    slot.put({outbox(key), header_bytes + header.bytes}, neighbours().rank(key.side), 0);
+    slot.put({outbox(key), kHeaderBytes + header.bytes}, neighbours().rank(key.side), 0);
     complete(slot);
     ++num_posted_[index(key)];
   }
@@ -90,9 +90,9 @@ class Pscw final : public SlotExchange {
  private:
   template <class Act>
   void for_slots(Act act) {
-    for (const Lane lane : {Lane::Halo, Lane::Bulk}) {
+    for (const Channel channel : {Channel::Halo, Channel::Bulk}) {
       for (const Side side : {Side::Left, Side::Right}) {
-        for (const std::uint64_t number : {1U, 2U}) act(MessageKey{lane, side, number});
+        for (const std::uint64_t number : {1U, 2U}) act(MessageKey{channel, side, number});
       }
     }
   }
@@ -110,11 +110,11 @@ class Pscw final : public SlotExchange {
 
   /// A run may end with a message on its way from either side, whose access is then not yet over.
   void take_in_the_last() {
-    for (const Lane lane : {Lane::Halo, Lane::Bulk}) {
+    for (const Channel channel : {Channel::Halo, Channel::Bulk}) {
       for (const Side side : {Side::Left, Side::Right}) {
-        const auto at = index({lane, side, 0});
+        const auto at = index({channel, side, 0});
         if (num_posted_[at] == num_recycled_[at]) continue;
-        const MessageKey key{lane, side, num_recycled_[at] + 1};
+        const MessageKey key{channel, side, num_recycled_[at] + 1};
         if (!is_tested_[at]) wait(window(key));
         recycle(key);
       }
@@ -139,11 +139,11 @@ class Pscw final : public SlotExchange {
     return windows_[index(key)][static_cast<std::size_t>(key.slot())];
   }
 
-  std::array<std::array<Window, 2>, num_lane_sides> windows_;
-  std::array<std::vector<std::byte>, num_lane_sides> outboxes_;
+  std::array<std::array<Window, 2>, kNumChannelSides> windows_;
+  std::array<std::vector<std::byte>, kNumChannelSides> outboxes_;
   std::array<MPI_Group, 2> groups_{MPI_GROUP_NULL, MPI_GROUP_NULL};
-  std::array<std::uint64_t, num_lane_sides> num_posted_{}, num_recycled_{};
-  std::array<bool, num_lane_sides> is_tested_{};  ///< in, not yet recycled
+  std::array<std::uint64_t, kNumChannelSides> num_posted_{}, num_recycled_{};
+  std::array<bool, kNumChannelSides> is_tested_{};  ///< in, not yet recycled
   int num_exceptions_;
 };
 

@@ -15,7 +15,7 @@ class PutFlag final : public OneSidedExchange {
   void post(const MessageKey& key, const MessageHeader& header) override {
     std::byte* message = outbox(key);
     write_header(header, message);
-    window().put({message, header_bytes + header.bytes}, target(key),
+    window().put({message, kHeaderBytes + header.bytes}, target(key),
                  layout().slot(SlotLayout::at_receiver(key)));
     window().flush(target(key));
     put_word(key, key.number);

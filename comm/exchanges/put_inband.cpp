@@ -26,7 +26,7 @@ class PutInband final : public OneSidedExchange {
   void post(const MessageKey& key, const MessageHeader& header) override {
     std::byte* message = outbox(key);
     MessageHeader sealed = header;
-    sealed.checksum = checksum(message + header_bytes, header);
+    sealed.checksum = checksum(message + kHeaderBytes, header);
     write_header(sealed, message);
     const std::size_t end = trailer_offset(header.bytes);
     std::memcpy(message + end, &key.number, sizeof(key.number));
@@ -43,7 +43,7 @@ class PutInband final : public OneSidedExchange {
 
  private:
   static std::size_t trailer_offset(std::uint64_t bytes) {
-    return header_bytes + (static_cast<std::size_t>(bytes) + 7) / 8 * 8;
+    return kHeaderBytes + (static_cast<std::size_t>(bytes) + 7) / 8 * 8;
   }
 
   // Covers the header too: its fields may land late as well.
@@ -61,10 +61,10 @@ class PutInband final : public OneSidedExchange {
     };
     if (number_at(0) != key.number) return false;
     const MessageHeader header = read_header(message);
-    if (header.bytes > capacity().of(key.lane) ||
+    if (header.bytes > capacity().of(key.channel) ||
         number_at(trailer_offset(header.bytes)) != key.number)
       return false;
-    return header.checksum == checksum(message + header_bytes, header);
+    return header.checksum == checksum(message + kHeaderBytes, header);
   }
 };
 

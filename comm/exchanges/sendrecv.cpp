@@ -20,7 +20,7 @@ class Sendrecv final : public TwoSidedExchange {
   const std::byte* arrived(const MessageKey& key) override {
     Slot& slot = inbox(key);
     check(MPI_Irecv(slot.memory.data(), mpi_count(slot.memory.size()), MPI_BYTE, neighbour(key),
-                    key.lane_side(), communicator().handle(), &slot.request),
+                    key.channel_side(), communicator().handle(), &slot.request),
           "MPI_Irecv");
     MPI_Status status;
     wait_until(

@@ -19,7 +19,7 @@ class SharedMemory final : public SlotExchange {
   std::string_view name() const override { return "shared"; }
   /// Stores need nobody's help; reductions do where they go from rank to rank.
   bool needs_progress() const override {
-    return communicator().size() > Reduction::default_direct_ranks;
+    return communicator().size() > Reduction::kDefaultDirectRanks;
   }
 
  protected:

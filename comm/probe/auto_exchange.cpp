@@ -6,16 +6,16 @@
 
 #include <fmt/format.h>
 
-#include <barchan/comm/base/clock.hpp>
 #include <barchan/comm/exchanges/make_exchange.hpp>
+#include <barchan/core/base/clock.hpp>
 #include <barchan/core/base/error.hpp>
 
 namespace barchan {
 namespace {
 
-constexpr double budget_seconds = 0.02;  // for each measurement of a candidate
-constexpr double equal_share = 1.1;
-constexpr double equal_seconds = 0.5e-6;
+constexpr double kBudgetSeconds = 0.02;  // for each measurement of a candidate
+constexpr double kEqualShare = 1.1;
+constexpr double kEqualSeconds = 0.5e-6;
 
 /// The largest message and the least work of all ranks.
 void agree_pattern(const Communicator& communicator, std::size_t& bytes, WorkPattern& work) {
@@ -34,7 +34,7 @@ ExchangeCandidate measure(const std::string& name, const Communicator& communica
   candidate.name = name;
   try {
     const auto exchange = make_exchange(name, communicator, neighbours, options);
-    ExchangeProbe probe(communicator, neighbours, *exchange, choice.bytes, budget_seconds);
+    ExchangeProbe probe(communicator, neighbours, *exchange, choice.bytes, kBudgetSeconds);
     candidate.exposed = probe.exposed(choice.work);
     candidate.half_round_trip = probe.half_round_trip();
   } catch (const InputError& e) {
@@ -59,7 +59,7 @@ std::size_t best_of(const std::vector<ExchangeCandidate>& candidates) {
   for (const auto& c : candidates) {
     if (c.obstacle.empty()) least = std::min(least, c.exposed);
   }
-  const double good = std::max(least * equal_share, least + equal_seconds);
+  const double good = std::max(least * kEqualShare, least + kEqualSeconds);
   const auto found = std::ranges::find_if(candidates, [good](const ExchangeCandidate& c) {
     return c.obstacle.empty() && c.exposed <= good;
   });
@@ -122,7 +122,7 @@ SelectedExchange select_exchange(const Communicator& communicator, Neighbours ne
   choice.name = choice.candidates[best].name;
   choice.reason = reason_for(choice, choice.candidates[best]);
   auto chosen = make_exchange(choice.name, communicator, neighbours, sized);  // anew: its figures
-  choice.seconds = 1e-9 * static_cast<double>(now_ns() - begin);
+  choice.seconds = seconds_since(begin);
   communicator.allreduce_max(std::span(&choice.seconds, 1));
   return {std::move(chosen), choice};
 }

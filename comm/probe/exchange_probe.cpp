@@ -4,27 +4,22 @@
 #include <cstring>
 #include <string>
 
-#include <barchan/comm/base/clock.hpp>
 #include <barchan/comm/base/spin_work.hpp>
 #include <barchan/comm/base/watchdog.hpp>
 #include <barchan/comm/probe/probe.hpp>
+#include <barchan/core/base/clock.hpp>
 
 namespace barchan {
 namespace {
 
-constexpr std::array both_sides{Side::Left, Side::Right};
-constexpr int num_pieces = 8;
+constexpr int kNumPieces = 8;
 // Ranks that have been apart meet in the first steps, which do not count.
-constexpr int num_first = 2, least_repetitions = 3, most_repetitions = 1000;
+constexpr int kNumFirst = 2, kLeastRepetitions = 3, kMostRepetitions = 1000;
 
 double median(std::vector<double>& values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
-}
-
-double since(std::int64_t begin) {
-  return 1e-9 * static_cast<double>(now_ns() - begin);
 }
 
 SpinWork& work_of_this_thread() {
@@ -63,11 +58,11 @@ template <class Once>
 void ExchangeProbe::repeat(Once&& once) {
   const std::int64_t begin = now_ns();
   int num_done = 0;
-  for (int block = num_first + least_repetitions; num_done < most_repetitions; block *= 2) {
-    for (int n = 0; n < block; ++n) once(num_done + n >= num_first);
+  for (int block = kNumFirst + kLeastRepetitions; num_done < kMostRepetitions; block *= 2) {
+    for (int n = 0; n < block; ++n) once(num_done + n >= kNumFirst);
     num_done += block;
     // Twice as many take twice as long.
-    if (slowest(since(begin)) * 2.0 > budget_) return;
+    if (slowest(seconds_since(begin)) * 2.0 > budget_) return;
   }
 }
 
@@ -80,7 +75,7 @@ void ExchangeProbe::send(Side side) {
 
 bool ExchangeProbe::poll_all() {
   bool all = true;
-  for (const Side side : both_sides) {
+  for (const Side side : kSides) {
     if (neighbours_.has(side) && !exchange_.poll(side)) all = false;
   }
   return all;
@@ -92,11 +87,11 @@ ExchangeProbe::Step ExchangeProbe::step(const WorkPattern& work, bool polls) {
   const auto timed = [&times](auto&& call) {
     const std::int64_t from = now_ns();
     const bool result = call();
-    times.in_calls += since(from);
+    times.in_calls += seconds_since(from);
     return result;
   };
   timed([&] {
-    for (const Side side : both_sides) send(side);
+    for (const Side side : kSides) send(side);
     return true;
   });
   bool is_in = false;
@@ -113,12 +108,12 @@ ExchangeProbe::Step ExchangeProbe::step(const WorkPattern& work, bool polls) {
                });
   }
   timed([&] {
-    for (const Side side : both_sides) {
+    for (const Side side : kSides) {
       if (neighbours_.has(side)) exchange_.release(side);
     }
     return true;
   });
-  times.whole = since(begin);
+  times.whole = seconds_since(begin);
   return times;
 }
 
@@ -141,7 +136,7 @@ double ExchangeProbe::median_work(const WorkPattern& work) {
     for (int piece = 0; piece < work.num_chunks; ++piece) {
       work_of_this_thread().run(work.seconds / work.num_chunks);
     }
-    if (counts) times.push_back(since(begin));
+    if (counts) times.push_back(seconds_since(begin));
   });
   return median(times);
 }
@@ -161,7 +156,7 @@ double ExchangeProbe::bounce(Side side, bool begins) {
              });
   exchange_.release(side);
   if (!begins) send(side);
-  return 0.5 * since(begin);
+  return 0.5 * seconds_since(begin);
 }
 
 // Pairs of ranks (parity, parity + 1), (parity + 2, parity + 3), … at the same time.
@@ -191,7 +186,7 @@ ExchangeCost ExchangeProbe::measure() {
   ExchangeCost cost;
   cost.both_ways = both_ways();
   cost.half_round_trip = half_round_trip();
-  const WorkPattern same{both_ways_, num_pieces};
+  const WorkPattern same{both_ways_, kNumPieces};
   const Step overlapped = median_step(same, true);
   const double exposed_same = overlapped.whole - median_work(same);
   const WorkPattern longer{2.0 * both_ways_, 1};

@@ -132,7 +132,7 @@ struct ExchangeOptions {
   std::size_t bulk_bytes =
       256 *
       1024;  ///< first size of a bulk fragment, equal on every rank; longer bulks go in rounds
-  ExchangeHooks hooks;
+  ExchangeHooks hooks{};
 };
 
 }  // namespace barchan

@@ -5,12 +5,12 @@
 namespace barchan {
 
 void write_header(const MessageHeader& header, std::byte* message) {
-  std::memcpy(message, &header, header_bytes);
+  std::memcpy(message, &header, kHeaderBytes);
 }
 
 MessageHeader read_header(const std::byte* message) {
   MessageHeader header;
-  std::memcpy(&header, message, header_bytes);
+  std::memcpy(&header, message, kHeaderBytes);
   return header;
 }
 
@@ -29,7 +29,7 @@ std::string fault_of(const MessageHeader& header, std::uint64_t expected_number,
 }
 
 std::string describe(const MessageKey& key, int neighbour) {
-  return std::string(key.lane == Lane::Halo ? "halo" : "bulk") + " message " +
+  return std::string(key.channel == Channel::Halo ? "halo" : "bulk") + " message " +
          std::to_string(key.number) + " from rank " + std::to_string(neighbour) + " (" +
          name_of(key.side) + ")";
 }

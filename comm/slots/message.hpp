@@ -9,22 +9,22 @@
 
 namespace barchan {
 
-/// Halo and bulk messages travel in lanes of their own: own slots, own sequence words, own numbers.
-enum class Lane : int { Halo = 0, Bulk = 1 };
-inline constexpr int num_lanes = 2;
+/// Halo and bulk messages travel in channels of their own: own slots, own sequence words, own numbers.
+enum class Channel : int { Halo = 0, Bulk = 1 };
+inline constexpr int kNumChannels = 2;
 
-/// Message `number` (from 1) of a lane, to or from the neighbour at `side`.
+/// Message `number` (from 1) of a channel, to or from the neighbour at `side`.
 struct MessageKey {
-  Lane lane = Lane::Halo;
+  Channel channel = Channel::Halo;
   Side side = Side::Left;
   std::uint64_t number = 0;
 
   [[nodiscard]] constexpr int slot() const { return static_cast<int>(number & 1U); }
-  [[nodiscard]] constexpr int lane_side() const {
-    return 2 * static_cast<int>(lane) + static_cast<int>(side);
+  [[nodiscard]] constexpr int channel_side() const {
+    return 2 * static_cast<int>(channel) + static_cast<int>(side);
   }
 };
-inline constexpr int num_lane_sides = 2 * num_lanes;
+inline constexpr int kNumChannelSides = 2 * kNumChannels;
 
 /// A message in memory; only some exchanges have a trailer:
 ///
@@ -39,8 +39,8 @@ struct MessageHeader {
 };
 static_assert(sizeof(MessageHeader) == 64);
 
-inline constexpr std::size_t header_bytes = sizeof(MessageHeader);
-inline constexpr std::size_t trailer_bytes =
+inline constexpr std::size_t kHeaderBytes = sizeof(MessageHeader);
+inline constexpr std::size_t kTrailerBytes =
     64;  ///< room for a trailer that keeps slots apart by cache lines
 
 constexpr std::size_t round_to_line(std::size_t bytes) {
@@ -49,7 +49,7 @@ constexpr std::size_t round_to_line(std::size_t bytes) {
 
 /// Memory that a slot takes for payloads of up to `capacity` bytes.
 constexpr std::size_t slot_bytes(std::size_t capacity) {
-  return header_bytes + round_to_line(capacity) + trailer_bytes;
+  return kHeaderBytes + round_to_line(capacity) + kTrailerBytes;
 }
 
 void write_header(const MessageHeader& header, std::byte* message);

@@ -13,7 +13,7 @@ std::vector<std::string> lines_of(std::span<const ExchangeObstacle> obstacles) {
     if (same == reasons.end())
       reasons.emplace_back(o.reason, o.exchange);
     else
-      same->second += ", " + o.exchange;
+      same->second.append(", ").append(o.exchange);
   }
   std::vector<std::string> lines;
   for (const auto& [reason, exchanges] : reasons) lines.push_back(exchanges + ": " + reason);

@@ -8,10 +8,10 @@ void OneSidedExchange::allocate(SlotCapacity capacity) {
   window_.lock_all();
   is_unified_ = window_.is_unified();
   communicator().barrier();
-  for (const Lane lane : {Lane::Halo, Lane::Bulk}) {
+  for (const Channel channel : {Channel::Halo, Channel::Bulk}) {
     for (const Side side : {Side::Left, Side::Right}) {
       if (neighbours().has(side))
-        local_[index({lane, side, 0})].assign(slot_bytes(capacity.of(lane)), std::byte{});
+        local_[index({channel, side, 0})].assign(slot_bytes(capacity.of(channel)), std::byte{});
     }
   }
 }

@@ -11,7 +11,7 @@
 namespace barchan {
 
 /// Common to the exchanges that put into the neighbour's slots under one MPI_Win_lock_all.
-/// One outbox per lane and side, outside the window: it is free again when post() returns.
+/// One outbox per channel and side, outside the window: it is free again when post() returns.
 class OneSidedExchange : public SlotExchange {
  public:
   using SlotExchange::SlotExchange;
@@ -33,7 +33,7 @@ class OneSidedExchange : public SlotExchange {
     return window_.base() + layout_.slot(key);
   }
 
-  /// Memory outside the window for one message per lane and side.
+  /// Memory outside the window for one message per channel and side.
   [[nodiscard]] std::byte* local(const MessageKey& key) { return local_[index(key)].data(); }
 
   /// This rank's sequence word for messages from key.side, acquired.
@@ -48,8 +48,8 @@ class OneSidedExchange : public SlotExchange {
   Window window_;
   SlotLayout layout_;
   bool is_unified_ = false;
-  std::array<std::vector<std::byte>, num_lane_sides> local_;
-  std::array<std::uint64_t, num_lane_sides>
+  std::array<std::vector<std::byte>, kNumChannelSides> local_;
+  std::array<std::uint64_t, kNumChannelSides>
       word_values_{};  // a put's origin must live until it is flushed
 };
 

@@ -7,16 +7,16 @@
 #include <vector>
 
 #include <barchan/comm/base/call_watch.hpp>
-#include <barchan/comm/base/clock.hpp>
 #include <barchan/comm/base/mpi_error.hpp>
 #include <barchan/comm/base/watchdog.hpp>
 #include <barchan/comm/base/window.hpp>
+#include <barchan/core/base/clock.hpp>
 
 namespace barchan {
 namespace {
 
 // | word, on a cache line of its own | data ... |
-constexpr std::size_t data_offset = 64;
+constexpr std::size_t kDataOffset = 64;
 
 struct Put {
   const Window& window;
@@ -29,7 +29,7 @@ struct Put {
     ++number;
     const int count = mpi_count(data.size());
     check(
-        MPI_Put(data.data(), count, MPI_BYTE, other, data_offset, count, MPI_BYTE, window.handle()),
+        MPI_Put(data.data(), count, MPI_BYTE, other, kDataOffset, count, MPI_BYTE, window.handle()),
         "MPI_Put");
     check(MPI_Win_flush(other, window.handle()), "MPI_Win_flush");
     check(MPI_Put(&number, 8, MPI_BYTE, other, 0, 8, MPI_BYTE, window.handle()), "MPI_Put");
@@ -77,7 +77,7 @@ double median_bounce(Put& put, bool begins, int count) {
 double plain_put_half_round_trip(const Communicator& caller, std::size_t bytes,
                                  double budget_seconds) {
   const Communicator communicator = caller.duplicate();
-  Window window(communicator, data_offset + bytes);
+  Window window(communicator, kDataOffset + bytes);
   window.lock_all();
   communicator.barrier();
   const bool begins = communicator.rank() % 2 == 0;

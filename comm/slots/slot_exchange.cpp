@@ -4,20 +4,15 @@
 #include <stdexcept>
 #include <string>
 
-#include <barchan/comm/base/clock.hpp>
 #include <barchan/comm/base/memory_left.hpp>
 #include <barchan/comm/base/mpi_error.hpp>
+#include <barchan/core/base/clock.hpp>
 #include <barchan/core/base/error.hpp>
 
 namespace barchan {
 namespace {
 
-constexpr std::array both_sides{Side::Left, Side::Right};
-constexpr std::size_t largest_fragment = std::size_t{16} << 20;
-
-double seconds_since(std::int64_t begin_ns) {
-  return 1e-9 * static_cast<double>(now_ns() - begin_ns);
-}
+constexpr std::size_t kLargestFragment = std::size_t{16} << 20;
 
 }  // namespace
 
@@ -58,7 +53,7 @@ void SlotExchange::reserve(std::size_t bytes) {
   std::int64_t largest_bulk = static_cast<std::int64_t>(largest_bulk_);
   communicator_.allreduce_max(std::span(&largest_bulk, 1));  // also: everybody has retired
   const auto wanted_bulk =
-      std::min(static_cast<std::size_t>(largest_bulk) * 5 / 4, largest_fragment);
+      std::min(static_cast<std::size_t>(largest_bulk) * 5 / 4, kLargestFragment);
   capacity_.halo = round_to_line(bytes + bytes / 2);
   capacity_.bulk = round_to_line(std::max(capacity_.bulk, wanted_bulk));
   tracks_ = {};
@@ -72,30 +67,30 @@ void SlotExchange::require_neighbour(Side side, const char* what) const {
   }
 }
 
-std::byte* SlotExchange::open_outbox(Lane lane, Side side, std::size_t bytes) {
+std::byte* SlotExchange::open_outbox(Channel channel, Side side, std::size_t bytes) {
   require_neighbour(side, "Exchange::outgoing");
-  Track& mine = track(lane, side);
+  Track& mine = track(channel, side);
   if (mine.released < mine.sent) [[unlikely]] {
     throw std::logic_error("Exchange::outgoing: the neighbour's message " +
                            std::to_string(mine.sent) + " must be released before message " +
                            std::to_string(mine.sent + 1) + " is packed");
   }
-  if (bytes > capacity_.of(lane)) [[unlikely]] {
+  if (bytes > capacity_.of(channel)) [[unlikely]] {
     throw std::logic_error("Exchange::outgoing: " + std::to_string(bytes) +
-                           " bytes are more than the " + std::to_string(capacity_.of(lane)) +
+                           " bytes are more than the " + std::to_string(capacity_.of(channel)) +
                            " reserved");
   }
   mine.outgoing_bytes = bytes;
   mine.is_packing = true;
-  return outbox({lane, side, mine.sent + 1});
+  return outbox({channel, side, mine.sent + 1});
 }
 
 std::span<std::byte> SlotExchange::outgoing(Side side, std::size_t bytes) {
-  return {open_outbox(Lane::Halo, side, bytes) + header_bytes, bytes};
+  return {open_outbox(Channel::Halo, side, bytes) + kHeaderBytes, bytes};
 }
 
-void SlotExchange::post_message(Lane lane, Side side, bool has_more) {
-  Track& mine = track(lane, side);
+void SlotExchange::post_message(Channel channel, Side side, bool has_more) {
+  Track& mine = track(channel, side);
   if (!mine.is_packing) [[unlikely]]
     throw std::logic_error("Exchange::send: no message was packed");
   const std::int64_t begin = now_ns();
@@ -105,21 +100,21 @@ void SlotExchange::post_message(Lane lane, Side side, bool has_more) {
   header.posted = begin;
   header.has_more = has_more ? 1 : 0;
   mine.is_packing = false;
-  post({lane, side, header.number}, header);
-  if (lane == Lane::Halo) halo_times_[index_of(side)].sent = begin;
+  post({channel, side, header.number}, header);
+  if (channel == Channel::Halo) halo_times_[index_of(side)].sent = begin;
 }
 
 void SlotExchange::send(Side side) {
-  post_message(Lane::Halo, side, false);
+  post_message(Channel::Halo, side, false);
   ++stats_.halo_messages;
-  stats_.halo_bytes += track(Lane::Halo, side).outgoing_bytes;
+  stats_.halo_bytes += track(Channel::Halo, side).outgoing_bytes;
 }
 
-bool SlotExchange::look_for(Lane lane, Side side) {
+bool SlotExchange::look_for(Channel channel, Side side) {
   if (!neighbours_.has(side)) return false;
-  Track& mine = track(lane, side);
+  Track& mine = track(channel, side);
   if (mine.is_in) return true;
-  const MessageKey key{lane, side, mine.released + 1};
+  const MessageKey key{channel, side, mine.released + 1};
   const std::byte* message = arrived(key);
   if (message == nullptr) return false;
   accept(key, message);
@@ -127,49 +122,49 @@ bool SlotExchange::look_for(Lane lane, Side side) {
 }
 
 void SlotExchange::accept(const MessageKey& key, const std::byte* message) {
-  Track& mine = track(key.lane, key.side);
+  Track& mine = track(key.channel, key.side);
   mine.header = read_header(message);
-  const std::string fault = fault_of(mine.header, key.number, capacity_.of(key.lane));
+  const std::string fault = fault_of(mine.header, key.number, capacity_.of(key.channel));
   if (!fault.empty()) [[unlikely]] {
     throw RunError("rank " + std::to_string(communicator_.rank()) + ": " +
                    describe(key, neighbours_.rank(key.side)) + " is damaged: " + fault);
   }
-  mine.payload = {message + header_bytes, static_cast<std::size_t>(mine.header.bytes)};
+  mine.payload = {message + kHeaderBytes, static_cast<std::size_t>(mine.header.bytes)};
   mine.is_in = true;
 }
 
 bool SlotExchange::poll(Side side) {
-  const bool was_in = track(Lane::Halo, side).is_in;
-  if (!look_for(Lane::Halo, side)) return false;
+  const bool was_in = track(Channel::Halo, side).is_in;
+  if (!look_for(Channel::Halo, side)) return false;
   if (was_in) return true;
-  const Track& mine = track(Lane::Halo, side);
+  const Track& mine = track(Channel::Halo, side);
   HaloTimes& times = halo_times_[index_of(side)];
   times.noticed = now_ns();
   times.posted = mine.header.posted;
   if (mine.sent == mine.header.number)
-    stats_.flight_seconds += 1e-9 * static_cast<double>(times.noticed - times.sent);
+    stats_.flight_seconds += to_seconds(times.noticed - times.sent);
   return true;
 }
 
 std::span<const std::byte> SlotExchange::received(Side side) const {
-  const Track& mine = track(Lane::Halo, side);
+  const Track& mine = track(Channel::Halo, side);
   if (!mine.is_in) [[unlikely]]
     throw std::logic_error("Exchange::received: no message is in");
   return mine.payload;
 }
 
 void SlotExchange::release(Side side) {
-  release_message(Lane::Halo, side);
+  release_message(Channel::Halo, side);
 }
 
-void SlotExchange::release_message(Lane lane, Side side) {
-  Track& mine = track(lane, side);
+void SlotExchange::release_message(Channel channel, Side side) {
+  Track& mine = track(channel, side);
   if (!mine.is_in) [[unlikely]]
     throw std::logic_error("Exchange::release: no message is in");
   mine.is_in = false;
   mine.payload = {};
   ++mine.released;
-  recycle({lane, side, mine.released});
+  recycle({channel, side, mine.released});
 }
 
 void SlotExchange::begin_bulk(std::span<const std::byte> to_left,
@@ -185,7 +180,7 @@ void SlotExchange::begin_bulk(std::span<const std::byte> to_left,
   const std::size_t needed =
       std::max<std::size_t>(1, (longest + capacity_.bulk - 1) / capacity_.bulk);
   const std::size_t agreed = agree_rounds(needed);
-  for (const Side side : both_sides) {
+  for (const Side side : kSides) {
     if (agreed > 0) bulk_sides_[index_of(side)].num_rounds = agreed;
     if (neighbours_.has(side)) send_fragment(side);
   }
@@ -205,11 +200,11 @@ void SlotExchange::prepare_bulk(Side side, std::span<const std::byte> bytes) {
 void SlotExchange::send_fragment(Side side) {
   BulkSide& mine = bulk_sides_[index_of(side)];
   const std::size_t bytes = std::min(capacity_.bulk, mine.out.size() - mine.num_sent);
-  std::byte* outbox = open_outbox(Lane::Bulk, side, bytes) + header_bytes;
+  std::byte* outbox = open_outbox(Channel::Bulk, side, bytes) + kHeaderBytes;
   std::copy_n(mine.out.data() + mine.num_sent, bytes, outbox);
   mine.num_sent += bytes;
   ++mine.round;
-  post_message(Lane::Bulk, side, mine.round < mine.num_rounds);
+  post_message(Channel::Bulk, side, mine.round < mine.num_rounds);
   ++stats_.bulk_messages;
   stats_.bulk_bytes += bytes;
 }
@@ -217,11 +212,11 @@ void SlotExchange::send_fragment(Side side) {
 // One round at most: in a ring of blocking exchanges a rank must serve both sides in turn.
 void SlotExchange::advance_bulk(Side side) {
   BulkSide& mine = bulk_sides_[index_of(side)];
-  if (mine.is_done || !look_for(Lane::Bulk, side)) return;
-  const Track& lane = track(Lane::Bulk, side);
-  mine.in.insert(mine.in.end(), lane.payload.begin(), lane.payload.end());
-  const bool they_have_more = lane.header.has_more != 0;
-  release_message(Lane::Bulk, side);
+  if (mine.is_done || !look_for(Channel::Bulk, side)) return;
+  const Track& channel = track(Channel::Bulk, side);
+  mine.in.insert(mine.in.end(), channel.payload.begin(), channel.payload.end());
+  const bool they_have_more = channel.header.has_more != 0;
+  release_message(Channel::Bulk, side);
   if (they_have_more || mine.round < mine.num_rounds) {
     send_fragment(side);
   } else {

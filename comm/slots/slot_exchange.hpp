@@ -8,19 +8,21 @@
 
 namespace barchan {
 
-/// Bytes of payload that a slot of each lane holds, equal on every rank.
+/// Bytes of payload that a slot of each channel holds, equal on every rank.
 struct SlotCapacity {
   std::size_t halo = 0;
   std::size_t bulk = 0;
 
-  [[nodiscard]] std::size_t of(Lane lane) const { return lane == Lane::Halo ? halo : bulk; }
+  [[nodiscard]] std::size_t of(Channel channel) const {
+    return channel == Channel::Halo ? halo : bulk;
+  }
 };
 
 /// What all exchanges have in common: numbers, headers, growth, bulk in fragments, figures. A
 /// derived class says where messages lie and how they travel (the protected part).
 ///
-/// Each lane has two slots per direction; message n uses slot n mod 2. Happens-before, A and B
-/// neighbours, one lane:
+/// Each channel has two slots per direction; message n uses slot n mod 2. Happens-before, A and B
+/// neighbours, one channel:
 ///
 ///     pack A(n) → post A(n) → arrived B(n) → release B(n)     and the same with A and B swapped
 ///     release of n → pack of n+1, on either rank              duty of the caller, or of the rounds
@@ -49,7 +51,9 @@ class SlotExchange : public Exchange {
   void progress() override;
   bool poll_bulk() final;
   std::vector<std::byte>& bulk(Side side) final { return bulk_sides_[index_of(side)].in; }
-  std::int64_t bulk_posted(Side side) const final { return track(Lane::Bulk, side).header.posted; }
+  std::int64_t bulk_posted(Side side) const final {
+    return track(Channel::Bulk, side).header.posted;
+  }
   ExchangeStats stats() const final;
   HaloTimes halo_times(Side side) const final { return halo_times_[index_of(side)]; }
 
@@ -82,11 +86,11 @@ class SlotExchange : public Exchange {
   [[nodiscard]] SlotCapacity capacity() const { return capacity_; }
 
   static constexpr std::size_t index(const MessageKey& key) {
-    return static_cast<std::size_t>(key.lane_side());
+    return static_cast<std::size_t>(key.channel_side());
   }
 
  private:
-  struct Track {  // of one lane and side
+  struct Track {  // of one channel and side
     std::uint64_t sent = 0;
     std::uint64_t released = 0;
     std::size_t outgoing_bytes = 0;
@@ -104,17 +108,17 @@ class SlotExchange : public Exchange {
     std::vector<std::byte> in;
   };
 
-  Track& track(Lane lane, Side side) { return tracks_[index(MessageKey{lane, side, 0})]; }
-  const Track& track(Lane lane, Side side) const {
-    return tracks_[index(MessageKey{lane, side, 0})];
+  Track& track(Channel channel, Side side) { return tracks_[index(MessageKey{channel, side, 0})]; }
+  const Track& track(Channel channel, Side side) const {
+    return tracks_[index(MessageKey{channel, side, 0})];
   }
   void require_neighbour(Side side, const char* what) const;
   void require_room(SlotCapacity capacity) const;
-  std::byte* open_outbox(Lane lane, Side side, std::size_t bytes);
-  void post_message(Lane lane, Side side, bool has_more);
-  bool look_for(Lane lane, Side side);
+  std::byte* open_outbox(Channel channel, Side side, std::size_t bytes);
+  void post_message(Channel channel, Side side, bool has_more);
+  bool look_for(Channel channel, Side side);
   void accept(const MessageKey& key, const std::byte* message);
-  void release_message(Lane lane, Side side);
+  void release_message(Channel channel, Side side);
   void prepare_bulk(Side side, std::span<const std::byte> bytes);
   void send_fragment(Side side);
   void advance_bulk(Side side);
@@ -122,7 +126,7 @@ class SlotExchange : public Exchange {
   Communicator communicator_;
   Neighbours neighbours_;
   SlotCapacity capacity_;
-  std::array<Track, num_lane_sides> tracks_{};
+  std::array<Track, kNumChannelSides> tracks_{};
   std::array<BulkSide, 2> bulk_sides_{};
   std::array<HaloTimes, 2> halo_times_{};
   std::size_t largest_bulk_ = 0;

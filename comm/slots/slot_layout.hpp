@@ -16,27 +16,28 @@ namespace barchan {
 /// neighbour, so nothing is confused where both neighbours are the same rank. Each slot has its own
 /// word, since a neighbour may announce n+1 before this rank has looked for n.
 struct SlotLayout {
-  static constexpr std::size_t word_bytes = 64;
-  static constexpr std::size_t all_words = 2 * num_lane_sides * word_bytes;
+  static constexpr std::size_t kWordBytes = 64;
+  static constexpr std::size_t kAllWords = 2 * kNumChannelSides * kWordBytes;
 
   SlotCapacity capacity;
 
   [[nodiscard]] constexpr std::size_t word(const MessageKey& key) const {
-    return word_bytes * static_cast<std::size_t>(2 * key.lane_side() + key.slot());
+    return kWordBytes * static_cast<std::size_t>(2 * key.channel_side() + key.slot());
   }
   [[nodiscard]] constexpr std::size_t slot(const MessageKey& key) const {
     const std::size_t halo = slot_bytes(capacity.halo);
     const std::size_t bulk = slot_bytes(capacity.bulk);
-    const auto position = static_cast<std::size_t>(2 * static_cast<int>(key.side) + key.slot());
-    return all_words + (key.lane == Lane::Halo ? position * halo : 4 * halo + position * bulk);
+    const auto position = 2 * index_of(key.side) + static_cast<std::size_t>(key.slot());
+    return kAllWords +
+           (key.channel == Channel::Halo ? position * halo : 4 * halo + position * bulk);
   }
   [[nodiscard]] constexpr std::size_t total() const {
-    return all_words + 4 * slot_bytes(capacity.halo) + 4 * slot_bytes(capacity.bulk);
+    return kAllWords + 4 * slot_bytes(capacity.halo) + 4 * slot_bytes(capacity.bulk);
   }
 
   /// The same message as its receiver sees it.
   [[nodiscard]] static constexpr MessageKey at_receiver(const MessageKey& key) {
-    return {key.lane, opposite(key.side), key.number};
+    return {key.channel, opposite(key.side), key.number};
   }
 };
 

@@ -39,13 +39,13 @@ TwoSidedExchange::~TwoSidedExchange() {
 }
 
 void TwoSidedExchange::allocate(SlotCapacity capacity) {
-  for (const Lane lane : {Lane::Halo, Lane::Bulk}) {
+  for (const Channel channel : {Channel::Halo, Channel::Bulk}) {
     for (const Side side : {Side::Left, Side::Right}) {
       if (!neighbours().has(side)) continue;
-      for (Slot& slot : inboxes_[index({lane, side, 0})])
-        slot.memory.resize(slot_bytes(capacity.of(lane)));
-      for (Slot& slot : outboxes_[index({lane, side, 0})])
-        slot.memory.resize(slot_bytes(capacity.of(lane)));
+      for (Slot& slot : inboxes_[index({channel, side, 0})])
+        slot.memory.resize(slot_bytes(capacity.of(channel)));
+      for (Slot& slot : outboxes_[index({channel, side, 0})])
+        slot.memory.resize(slot_bytes(capacity.of(channel)));
     }
   }
 }
@@ -67,9 +67,9 @@ std::byte* TwoSidedExchange::outbox(const MessageKey& key) {
 void TwoSidedExchange::post(const MessageKey& key, const MessageHeader& header) {
   Slot& slot = outboxes_[index(key)][static_cast<std::size_t>(key.slot())];
   write_header(header, slot.memory.data());
-  const MessageKey receiver{key.lane, opposite(key.side), key.number};
-  check(MPI_Isend(slot.memory.data(), mpi_count(header_bytes + header.bytes), MPI_BYTE,
-                  neighbour(key), receiver.lane_side(), communicator().handle(), &slot.request),
+  const MessageKey receiver{key.channel, opposite(key.side), key.number};
+  check(MPI_Isend(slot.memory.data(), mpi_count(kHeaderBytes + header.bytes), MPI_BYTE,
+                  neighbour(key), receiver.channel_side(), communicator().handle(), &slot.request),
         "MPI_Isend");
 }
 
@@ -77,7 +77,7 @@ void TwoSidedExchange::require_whole(const MessageKey& key, const MPI_Status& st
   int count = 0;
   check(MPI_Get_count(&status, MPI_BYTE, &count), "MPI_Get_count");
   const auto came = static_cast<std::size_t>(count);
-  if (came >= header_bytes && read_header(inbox(key).memory.data()).bytes == came - header_bytes)
+  if (came >= kHeaderBytes && read_header(inbox(key).memory.data()).bytes == came - kHeaderBytes)
     return;
   throw RunError("rank " + std::to_string(communicator().rank()) + ": " +
                  describe(key, neighbour(key)) + " has " + std::to_string(came) +

@@ -8,7 +8,7 @@
 
 namespace barchan {
 
-/// Common to the exchanges that send and receive. The tag names the lane and the receiver's side,
+/// Common to the exchanges that send and receive. The tag names the channel and the receiver's side,
 /// so that nothing is confused where both neighbours are the same rank.
 class TwoSidedExchange : public SlotExchange {
  public:
@@ -28,7 +28,7 @@ class TwoSidedExchange : public SlotExchange {
     MPI_Request request = MPI_REQUEST_NULL;
     bool is_posted = false;  // a persistent receive that is active
   };
-  using Slots = std::array<std::array<Slot, 2>, num_lane_sides>;
+  using Slots = std::array<std::array<Slot, 2>, kNumChannelSides>;
 
   [[nodiscard]] Slot& inbox(const MessageKey& key) {
     return inboxes_[index(key)][static_cast<std::size_t>(key.slot())];

@@ -3,30 +3,30 @@
 #include <limits>
 
 #include <barchan/comm/base/call_watch.hpp>
-#include <barchan/comm/base/clock.hpp>
 #include <barchan/comm/base/mpi_error.hpp>
 #include <barchan/comm/topology/links.hpp>
+#include <barchan/core/base/clock.hpp>
 
 namespace barchan {
 namespace {
 
-constexpr int num_trips = 50;
-constexpr int trip_tag = 3;
+constexpr int kNumTrips = 50;
+constexpr int kTripTag = 3;
 
 void send(MPI_Comm comm, int to, std::int64_t value) {
-  check_watched("MPI_Send", [&] { return MPI_Send(&value, 1, MPI_INT64_T, to, trip_tag, comm); });
+  check_watched("MPI_Send", [&] { return MPI_Send(&value, 1, MPI_INT64_T, to, kTripTag, comm); });
 }
 
 std::int64_t receive(MPI_Comm comm, int from) {
   std::int64_t value = 0;
   check_watched("MPI_Recv", [&] {
-    return MPI_Recv(&value, 1, MPI_INT64_T, from, trip_tag, comm, MPI_STATUS_IGNORE);
+    return MPI_Recv(&value, 1, MPI_INT64_T, from, kTripTag, comm, MPI_STATUS_IGNORE);
   });
   return value;
 }
 
 void answer(MPI_Comm comm, int rank) {
-  for (int trip = 0; trip < num_trips; ++trip) {
+  for (int trip = 0; trip < kNumTrips; ++trip) {
     (void)receive(comm, rank);
     send(comm, rank, now_ns());
   }
@@ -34,7 +34,7 @@ void answer(MPI_Comm comm, int rank) {
 
 std::int64_t ask(MPI_Comm comm) {
   std::int64_t shortest = std::numeric_limits<std::int64_t>::max(), offset = 0;
-  for (int trip = 0; trip < num_trips; ++trip) {
+  for (int trip = 0; trip < kNumTrips; ++trip) {
     const std::int64_t begin = now_ns();
     send(comm, 0, trip);
     const std::int64_t theirs = receive(comm, 0);

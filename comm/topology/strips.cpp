@@ -9,7 +9,7 @@
 namespace barchan {
 namespace {
 
-constexpr double tolerated_imbalance = 1.1;
+constexpr double kToleratedImbalance = 1.1;
 
 // sums[s] = particles in the slabs before s. Where nobody is, slabs count one each.
 std::vector<std::int64_t> prefix_sums(std::span<const std::int64_t> counts) {
@@ -85,7 +85,7 @@ std::vector<int> recut(std::span<const int> old_cuts, std::span<const std::int64
     throw std::logic_error("recut: the old cuts belong to another grid or number of strips");
   }
   std::vector<int> cuts(old_cuts.begin(), old_cuts.end());
-  if (imbalance(old_cuts, count_per_slab) <= tolerated_imbalance) return cuts;
+  if (imbalance(old_cuts, count_per_slab) <= kToleratedImbalance) return cuts;
 
   const auto sums = prefix_sums(count_per_slab);
   for (int i = 1; i < num_strips; ++i) {

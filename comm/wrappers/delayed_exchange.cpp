@@ -4,21 +4,20 @@
 #include <thread>
 #include <utility>
 
-#include <barchan/comm/base/clock.hpp>
+#include <barchan/core/base/clock.hpp>
 
 namespace barchan {
 
 DelayedExchange::DelayedExchange(std::unique_ptr<Exchange> inner, double max_delay_seconds,
                                  std::uint64_t seed)
-    : WrappedExchange(std::move(inner)), max_delay_seconds_(max_delay_seconds), random_(seed) {}
+    : WrappedExchange(std::move(inner)), max_delay_seconds_(max_delay_seconds), random_(seed, 0) {}
 
 std::int64_t DelayedExchange::random_delay_ns() {
-  return static_cast<std::int64_t>(
-      std::uniform_real_distribution<double>(0.0, 1e9 * max_delay_seconds_)(random_));
+  return static_cast<std::int64_t>(random_.uniform(0.0, 1e9 * max_delay_seconds_));
 }
 
 void DelayedExchange::hold_sometimes() {
-  if (random_() % 4 == 0)
+  if (random_.bits() % 4 == 0)
     std::this_thread::sleep_for(std::chrono::nanoseconds(random_delay_ns() / 4));
 }
 

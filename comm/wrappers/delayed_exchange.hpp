@@ -2,9 +2,9 @@
 
 #include <array>
 #include <memory>
-#include <random>
 
 #include <barchan/comm/wrappers/wrapped_exchange.hpp>
+#include <barchan/core/base/random.hpp>
 
 namespace barchan {
 
@@ -27,7 +27,7 @@ class DelayedExchange final : public WrappedExchange {
   bool is_shown(std::int64_t& shown_at);
 
   double max_delay_seconds_;
-  std::mt19937_64 random_;
+  CounterRandom random_;
   std::array<std::int64_t, 2> shown_at_{};  // [ns]; 0 = not in yet
   std::int64_t bulk_shown_at_ = 0;
 };

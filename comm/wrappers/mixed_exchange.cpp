@@ -8,8 +8,6 @@
 namespace barchan {
 namespace {
 
-constexpr std::array both_sides{Side::Left, Side::Right};
-
 /// Where this rank and its neighbours stand in their node.
 struct Place {
   std::vector<std::int64_t> nodes;   ///< the real ones
@@ -71,7 +69,7 @@ MixedExchange::MixedExchange(const ExchangeMix& mix, const Communicator& communi
                          right_is_near ? -1 : neighbours.right};
     parts_[1] = make(mix.far, communicator, far, options);
   }
-  for (const Side side : both_sides) {
+  for (const Side side : kSides) {
     const bool is_near = place.is_near(neighbours.rank(side));
     Exchange* mine = parts_[is_near ? 0 : 1].get();
     of_side_[index_of(side)] = mine != nullptr ? mine : parts_[0].get();

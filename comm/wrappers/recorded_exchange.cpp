@@ -2,12 +2,10 @@
 
 #include <algorithm>
 
-#include <barchan/comm/base/clock.hpp>
+#include <barchan/core/base/clock.hpp>
 
 namespace barchan {
 namespace {
-
-constexpr std::array both_sides{Side::Left, Side::Right};
 
 int halo_channel(Side side) {
   return side == Side::Left ? Tape::HaloLeft : Tape::HaloRight;
@@ -32,13 +30,13 @@ void RecordingExchange::begin_bulk(std::span<const std::byte> to_left,
 bool RecordingExchange::poll_bulk() {
   if (!WrappedExchange::poll_bulk()) return false;
   if (is_bulk_recorded_) return true;
-  for (const Side side : both_sides) tape_->record(bulk_channel(side), WrappedExchange::bulk(side));
+  for (const Side side : kSides) tape_->record(bulk_channel(side), WrappedExchange::bulk(side));
   is_bulk_recorded_ = true;
   return true;
 }
 
 void ReplayExchange::reserve(std::size_t bytes) {
-  for (const Side side : both_sides) {
+  for (const Side side : kSides) {
     auto& out = out_[index_of(side)];
     if (neighbours_.has(side)) out.resize(std::max(out.size(), bytes));
   }
@@ -65,7 +63,7 @@ bool ReplayExchange::poll(Side side) {
 
 void ReplayExchange::begin_bulk(std::span<const std::byte> /*to_left*/,
                                 std::span<const std::byte> /*to_right*/) {
-  for (const Side side : both_sides) {
+  for (const Side side : kSides) {
     const auto played = tape_->next(bulk_channel(side));
     bulk_[index_of(side)].assign(played.begin(), played.end());
   }

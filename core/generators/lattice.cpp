@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include <barchan/core/base/error.hpp>
+#include <barchan/core/generators/draw_radius.hpp>
 #include <barchan/core/generators/lattice.hpp>
-#include <barchan/core/generators/random.hpp>
 
 namespace barchan {
 namespace {

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numeric>
 
+#include <barchan/core/generators/draw_radius.hpp>
 #include <barchan/core/generators/packing.hpp>
 
 namespace barchan {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
+#include <barchan/core/base/random.hpp>
 #include <barchan/core/generators/grain.hpp>
-#include <barchan/core/generators/random.hpp>
 #include <barchan/core/generators/relax.hpp>
 #include <barchan/core/model/model.hpp>
 #include <barchan/core/model/particle_source.hpp>

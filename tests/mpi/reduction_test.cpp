@@ -13,7 +13,7 @@
 namespace barchan {
 namespace {
 
-constexpr int direct = Reduction::default_direct_ranks;
+constexpr int direct = Reduction::kDefaultDirectRanks;
 constexpr int tree = 0;
 
 double maximum_of(int rank, int round) {

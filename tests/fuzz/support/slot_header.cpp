@@ -10,11 +10,11 @@ namespace barchan::fuzz {
 
 void read_slot_header(std::span<const std::byte> bytes) {
   constexpr std::size_t kRoom = 4096;
-  std::byte header[header_bytes] = {};
+  std::byte header[kHeaderBytes] = {};
   std::memcpy(header, bytes.data(), std::min(bytes.size(), sizeof header));
   const MessageHeader read = read_header(header);
   if (fault_of(read, read.number, kRoom).empty() && read.bytes > kRoom) std::abort();
-  (void)describe({Lane::Bulk, Side::Left, read.number}, 3);
+  (void)describe({Channel::Bulk, Side::Left, read.number}, 3);
 }
 
 }  // namespace barchan::fuzz

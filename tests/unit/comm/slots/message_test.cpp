@@ -10,7 +10,7 @@ namespace barchan {
 namespace {
 
 TEST(Message, ReadsTheHeaderThatWasWritten) {
-  std::array<std::byte, header_bytes> memory{};
+  std::array<std::byte, kHeaderBytes> memory{};
   MessageHeader header;
   header.number = 7;
   header.bytes = 100;
@@ -38,16 +38,16 @@ TEST(Message, AcceptsNoRandomBytes) {
   std::mt19937_64 random(1);
 
   for (int trial = 0; trial < 10000; ++trial) {
-    std::array<std::uint64_t, header_bytes / 8> words{};
+    std::array<std::uint64_t, kHeaderBytes / 8> words{};
     for (auto& word : words) word = random();
-    std::array<std::byte, header_bytes> memory{};
-    std::memcpy(memory.data(), words.data(), header_bytes);
+    std::array<std::byte, kHeaderBytes> memory{};
+    std::memcpy(memory.data(), words.data(), kHeaderBytes);
     EXPECT_NE(fault_of(read_header(memory.data()), 12, 4096), "");
   }
 }
 
 TEST(Message, NamesItselfForAReport) {
-  EXPECT_EQ(describe({Lane::Halo, Side::Left, 17}, 2), "halo message 17 from rank 2 (left)");
+  EXPECT_EQ(describe({Channel::Halo, Side::Left, 17}, 2), "halo message 17 from rank 2 (left)");
 }
 
 }  // namespace

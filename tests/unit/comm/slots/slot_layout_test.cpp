@@ -11,9 +11,9 @@ namespace {
 
 std::vector<MessageKey> every_slot() {
   std::vector<MessageKey> keys;
-  for (const Lane lane : {Lane::Halo, Lane::Bulk}) {
+  for (const Channel channel : {Channel::Halo, Channel::Bulk}) {
     for (const Side side : {Side::Left, Side::Right}) {
-      for (const std::uint64_t number : {1U, 2U}) keys.push_back({lane, side, number});
+      for (const std::uint64_t number : {1U, 2U}) keys.push_back({channel, side, number});
     }
   }
   return keys;
@@ -24,9 +24,9 @@ TEST(SlotLayout, KeepsWordsAndSlotsApartAndOnCacheLines) {
     const SlotLayout layout{{halo, 777}};
     std::vector<std::pair<std::size_t, std::size_t>> ranges;  // begin, end
     for (const MessageKey& key : every_slot()) {
-      ranges.emplace_back(layout.word(key), layout.word(key) + SlotLayout::word_bytes);
+      ranges.emplace_back(layout.word(key), layout.word(key) + SlotLayout::kWordBytes);
       ranges.emplace_back(layout.slot(key),
-                          layout.slot(key) + slot_bytes(layout.capacity.of(key.lane)));
+                          layout.slot(key) + slot_bytes(layout.capacity.of(key.channel)));
     }
     std::ranges::sort(ranges);
 
@@ -41,18 +41,20 @@ TEST(SlotLayout, KeepsWordsAndSlotsApartAndOnCacheLines) {
 TEST(SlotLayout, TakesTurnsBetweenTwoSlots) {
   const SlotLayout layout{{100, 100}};
 
-  EXPECT_NE(layout.slot({Lane::Halo, Side::Left, 5}), layout.slot({Lane::Halo, Side::Left, 6}));
-  EXPECT_EQ(layout.slot({Lane::Halo, Side::Left, 5}), layout.slot({Lane::Halo, Side::Left, 7}));
+  EXPECT_NE(layout.slot({Channel::Halo, Side::Left, 5}),
+            layout.slot({Channel::Halo, Side::Left, 6}));
+  EXPECT_EQ(layout.slot({Channel::Halo, Side::Left, 5}),
+            layout.slot({Channel::Halo, Side::Left, 7}));
 }
 
 TEST(SlotLayout, HasRoomForHeaderPayloadAndTrailer) {
-  EXPECT_GE(slot_bytes(1), header_bytes + 1 + 7 + 8);
-  EXPECT_GE(slot_bytes(64), header_bytes + 64 + 8);
+  EXPECT_GE(slot_bytes(1), kHeaderBytes + 1 + 7 + 8);
+  EXPECT_GE(slot_bytes(64), kHeaderBytes + 64 + 8);
 }
 
 TEST(SlotLayout, WhatGoesRightArrivesLeft) {
-  EXPECT_EQ(SlotLayout::at_receiver({Lane::Bulk, Side::Right, 3}).side, Side::Left);
-  EXPECT_EQ(SlotLayout::at_receiver({Lane::Bulk, Side::Right, 3}).lane, Lane::Bulk);
+  EXPECT_EQ(SlotLayout::at_receiver({Channel::Bulk, Side::Right, 3}).side, Side::Left);
+  EXPECT_EQ(SlotLayout::at_receiver({Channel::Bulk, Side::Right, 3}).channel, Channel::Bulk);
 }
 
 }  // namespace

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include <barchan/core/base/error.hpp>
+#include <barchan/core/generators/draw_radius.hpp>
 #include <barchan/core/generators/packing.hpp>
-#include <barchan/core/generators/random.hpp>
 
 namespace barchan {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <barchan/core/base/random.hpp>
 #include <barchan/core/generators/grain.hpp>
-#include <barchan/core/generators/random.hpp>
 
 namespace barchan {
 namespace {

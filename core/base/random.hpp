@@ -2,8 +2,6 @@
 
 #include <cstdint>
 
-#include <barchan/core/model/particle_source.hpp>
-
 namespace barchan {
 
 /// Counter-based random numbers: number n of a seed is a hash of both, so every rank and compiler
@@ -32,18 +30,5 @@ class CounterRandom {
   std::uint64_t key_;
   std::uint64_t counter_ = 0;
 };
-
-/// Draws a radius [m]: a class by its weight, then uniform within it.
-[[nodiscard]] inline double draw_radius(const SizeDistribution& sizes, CounterRandom& random) {
-  double total = 0.0;
-  for (const RadiusClass& size : sizes.classes) total += size.weight;
-  double pick = random.uniform() * total;
-  std::size_t chosen = 0;
-  while (chosen + 1 < sizes.classes.size() && pick >= sizes.classes[chosen].weight) {
-    pick -= sizes.classes[chosen].weight;
-    ++chosen;
-  }
-  return random.uniform(sizes.classes[chosen].min, sizes.classes[chosen].max);
-}
 
 }  // namespace barchan
