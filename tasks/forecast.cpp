@@ -12,7 +12,6 @@
 namespace barchan {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kSkinShare = 0.3, kSpeedMargin = 1.05;
 constexpr double kOneDigit = 10.0, kThreeDigits = 1000.0;
 /// An overlap of interest is at least this share of a radius.

@@ -103,8 +103,8 @@ void ListsKeeper<Dim>::size_chunks(std::int64_t step) {
   std::int64_t pairs = 0;
   for (const Lane<Dim>& lane : run_.strip.lanes()) pairs += lane.brick.num_pairs();
   const double seconds = graph_.times().chunks - chunk_seconds_;
-  const auto worked =
-      static_cast<double>(pairs / run_.strip.num_lanes() * (step - chunks_sized_at_));
+  const double worked =
+      static_cast<double>(pairs * (step - chunks_sized_at_)) / run_.strip.num_lanes();
   chunk_seconds_ += seconds;
   chunks_sized_at_ = step;
   if (worked <= 0.0 || seconds <= 0.0) return;

@@ -22,8 +22,6 @@
 namespace barchan {
 namespace {
 
-constexpr double kInfinite = std::numeric_limits<double>::infinity();
-
 double stable_step(double m, double k, double c) {
   if (k > 0.0) return (std::sqrt(c * c + 4.0 * m * k) - c) / k;
   return c > 0.0 ? 2.0 * m / c : kInfinite;
@@ -147,12 +145,15 @@ struct Bonded {
   Eigen::Matrix3d k = Eigen::Matrix3d::Zero(), c = Eigen::Matrix3d::Zero();
   double shear_k = 0.0, shear_c = 0.0, bend_k = 0.0, bend_c = 0.0;
 
-  void add_linear(const Vec3& normal, double along_k, double across_k, double along_c,
-                  double across_c, int dimension) {
-    Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - normal * normal.transpose();
-    if (dimension == 2) across(2, 2) = 0.0;
-    k += along_k * normal * normal.transpose() + across_k * across;
-    c += along_c * normal * normal.transpose() + across_c * across;
+  struct Spring {
+    double k, c;
+  };
+  void add_linear(const Vec3& normal, const Spring& along, const Spring& across, int dimension) {
+    const Eigen::Matrix3d on = normal * normal.transpose();
+    Eigen::Matrix3d off = Eigen::Matrix3d::Identity() - on;
+    if (dimension == 2) off(2, 2) = 0.0;
+    k += along.k * on + across.k * off;
+    c += along.c * on + across.c * off;
   }
   [[nodiscard]] static double largest(const Eigen::Matrix3d& matrix) {
     return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(matrix, Eigen::EigenvaluesOnly)
@@ -177,8 +178,13 @@ Vec3 between(const Domain& domain, const Vec3& a, const Vec3& b) {
   return d;
 }
 
-void add_bond(const Model& model, const BondData& bond, const ParticleData& a,
-              const ParticleData& b, Bonded& of_a, Bonded& of_b) {
+struct BondEnd {
+  const ParticleData& particle;
+  Bonded& bonds;
+};
+void add_bond(const Model& model, const BondData& bond, const BondEnd& end_a,
+              const BondEnd& end_b) {
+  const ParticleData &a = end_a.particle, &b = end_b.particle;
   const BondLaw& law = model.bond_laws[static_cast<std::size_t>(bond.law)];
   const Vec3 d = between(model.domain, a.position, b.position);
   const double length = d.norm();
@@ -197,9 +203,9 @@ void add_bond(const Model& model, const BondData& bond, const ParticleData& a,
   };
   const double ks_share =
       std::sqrt(inverse / shear);  // the shear dashpot is critical for the mass without rotation
-  for (Bonded* p : {&of_a, &of_b}) {
-    p->add_linear(d / length, s.kn * inverse, s.ks * inverse, dashpot(s.kn, inverse),
-                  dashpot(s.ks, inverse), model.dimension);
+  for (Bonded* p : {&end_a.bonds, &end_b.bonds}) {
+    p->add_linear(d / length, {s.kn * inverse, dashpot(s.kn, inverse)},
+                  {s.ks * inverse, dashpot(s.ks, inverse)}, model.dimension);
     p->shear_k += s.ks * shear;
     p->shear_c += dashpot(s.ks, shear) / ks_share;
     p->bend_k += bending * turning;
@@ -223,7 +229,7 @@ void add_bonds(const Model& model, const ParticleSet& set, Limits& limits) {
   std::map<std::size_t, Bonded> bonded;
   for (const BondData& bond : set.bonds) {
     const std::size_t a = find(bond.id_a), b = find(bond.id_b);
-    add_bond(model, bond, set.particles[a], set.particles[b], bonded[a], bonded[b]);
+    add_bond(model, bond, {set.particles[a], bonded[a]}, {set.particles[b], bonded[b]});
   }
   const auto add = [&](const Bonded& p, const std::string& law) {
     limits.add("bond " + law + ", stretching",
@@ -240,17 +246,25 @@ void add_bonds(const Model& model, const ParticleSet& set, Limits& limits) {
   }
 }
 
+struct Touching {
+  double count;
+  std::size_t material;
+  Impact impact;
+};
+
 /// A plate moves against all that touches it, each particle against the plate. With n equal
 /// contacts the fastest of their motions is that of a mass 1/(n/M + 1/m) on one contact's spring.
-void add_plate(const Model& model, const WallSpec& plate, double num_touching, std::size_t material,
-               const Impact& impact, Limits& limits) {
-  const ContactConstants& pair = model.contacts.at(static_cast<int>(material), plate.material);
-  const double m = 1.0 / ((num_touching - 1.0) / plate.mass + 1.0 / impact.mass);
+void add_plate(const Model& model, const WallSpec& plate, const Touching& touching,
+               Limits& limits) {
+  const Impact& impact = touching.impact;
+  const ContactConstants& pair =
+      model.contacts.at(static_cast<int>(touching.material), plate.material);
+  const double m = 1.0 / ((touching.count - 1.0) / plate.mass + 1.0 / impact.mass);
   const auto [k, c] = with_law(model.contacts.law, [&]<class Law>(Law /*law*/) {
     return std::pair(Law::stiffness(pair, impact), Law::dashpot(pair, impact));
   });
-  limits.add(fmt::format("plate {} on {:.0f} of {}", plate.name, num_touching,
-                         model.materials[material].name),
+  limits.add(fmt::format("plate {} on {:.0f} of {}", plate.name, touching.count,
+                         model.materials[touching.material].name),
              stable_step(m, k, c));
 }
 
@@ -269,8 +283,10 @@ void add_plates(const Model& model, const ParticleSet& set, const std::vector<Li
       const double width = 2.0 * radii[a] / counts[a];
       const double across = model.dimension == 3 ? std::floor(wall.depth / width) + 1.0 : 1.0;
       const double fit = 2.0 * (std::floor(wall.width / width) + 1.0) * across;
-      add_plate(model, wall, std::min(counts[a], fit), a,
-                impact_of(*lightest[a].first, {1.0 / wall.mass, 0.0}, speed), limits);
+      add_plate(model, wall,
+                {std::min(counts[a], fit), a,
+                 impact_of(*lightest[a].first, {1.0 / wall.mass, 0.0}, speed)},
+                limits);
     }
   }
 }

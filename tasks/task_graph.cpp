@@ -17,7 +17,7 @@ namespace {
 using Signal = tbb::flow::continue_msg;
 
 /// The edge from who runs the graph to all of its tasks, which look for their own edges behind it.
-const char begin_of_run = 0;
+const char kBeginOfRun = 0;
 
 bool is_message(Work work) {
   return work == Work::Begin || work == Work::ArrivedLeft || work == Work::ArrivedRight;
@@ -106,7 +106,7 @@ void TaskGraph::build() {
       else
         nodes_->add(parity, std::make_unique<tbb::flow::continue_node<Signal>>(
                                 *nodes_->graph, [this, t, parity](const Signal&) {
-                                  tell_acquire(&begin_of_run);
+                                  tell_acquire(&kBeginOfRun);
                                   do_task(t, parity);
                                 }));
     }
@@ -149,7 +149,7 @@ void TaskGraph::put(int task, int parity) {
 
 void TaskGraph::run(const std::function<void()>& begin) {
   nodes_->arena.execute([&] {
-    tell_release(&begin_of_run);
+    tell_release(&kBeginOfRun);
     begin();
     nodes_->graph->wait_for_all();
     tell_acquire(nodes_.get());

@@ -9,6 +9,7 @@
 #include <tbb/task_arena.h>
 
 #include <barchan/comm/topology/clock_offset.hpp>
+#include <barchan/core/base/host_name.hpp>
 #include <barchan/core/io/text_file.hpp>
 #include <barchan/tasks/agree.hpp>
 
@@ -25,11 +26,6 @@ constexpr std::array<const char*, static_cast<std::size_t>(Trace::Counter::kNum)
 const char* detail_name(Trace::Slice slice) {
   if (slice == Trace::Slice::Send || slice == Trace::Slice::Poll) return "side";
   return "lane";
-}
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "?";
 }
 
 }  // namespace

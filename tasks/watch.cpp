@@ -184,6 +184,7 @@ bool Watch<Dim>::remove_outside(std::int64_t step) {
   const std::vector<Departure> left = departures(step);
   if (left.empty()) return false;  // it came back meanwhile
   std::vector<std::int64_t> ids;
+  ids.reserve(left.size());
   for (const Departure& d : left) ids.push_back(d.id);
   LinkCounts gone;
   for (Lane<Dim>& lane : run_.strip.lanes()) gone += lane.rebuild.remove(ids);

@@ -17,6 +17,8 @@
 #include <string_view>
 #include <vector>
 
+#include <barchan/core/base/host_name.hpp>
+
 namespace fs = std::filesystem;
 
 namespace barchan {
@@ -29,9 +31,7 @@ constexpr std::array<std::string_view, 4> kPrefixes{"vader_segment.", "sm_segmen
 constexpr std::time_t kOld = 2;
 
 std::string short_host() {
-  char name[256] = {};
-  (void)::gethostname(name, sizeof name - 1);
-  const std::string host(name);
+  const std::string host = host_name();
   return host.substr(0, host.find('.'));
 }
 

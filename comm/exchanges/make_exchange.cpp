@@ -100,6 +100,7 @@ std::string exchanges_here(const Communicator& communicator, Neighbours neighbou
 
 std::vector<std::string> exchange_names() {
   std::vector<std::string> names;
+  names.reserve(kEntries.size());
   for (const Entry& entry : kEntries) names.emplace_back(entry.name);
   return names;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace barchan {
 
 std::vector<std::string> lines_of(std::span<const ExchangeObstacle> obstacles) {
@@ -16,7 +18,9 @@ std::vector<std::string> lines_of(std::span<const ExchangeObstacle> obstacles) {
       same->second.append(", ").append(o.exchange);
   }
   std::vector<std::string> lines;
-  for (const auto& [reason, exchanges] : reasons) lines.push_back(exchanges + ": " + reason);
+  lines.reserve(reasons.size());
+  for (const auto& [reason, exchanges] : reasons)
+    lines.push_back(fmt::format("{}: {}", exchanges, reason));
   return lines;
 }
 

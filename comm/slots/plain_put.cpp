@@ -67,6 +67,7 @@ double bounce(Put& put, bool begins) {
 double median_bounce(Put& put, bool begins, int count) {
   const CallWatch watch("MPI_Win_flush");  // one for all of them, which would cost as much as they
   std::vector<double> times;
+  times.reserve(static_cast<std::size_t>(count));
   for (int n = 0; n < count; ++n) times.push_back(bounce(put, begins));
   std::ranges::nth_element(times, times.begin() + count / 2);
   return times[static_cast<std::size_t>(count / 2)];

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include <Eigen/Core>
 
 namespace barchan {
@@ -17,5 +19,7 @@ using Spin = Eigen::Matrix<double, kSpins<Dim>, 1, Eigen::DontAlign>;
 
 /// Dimension-free vector of decks and files: 2D leaves the third component zero.
 using Vec3 = Vec<3>;
+
+inline constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 }  // namespace barchan

@@ -9,7 +9,7 @@ constexpr const char* kAxisNames[] = {"x", "y", "z"};
 }
 
 Box read_corners(const TableReader& table, std::string_view what) {
-  const Box box{table.vector("lo"), table.vector("hi")};
+  Box box{table.vector("lo"), table.vector("hi")};
   for (int axis = 0; axis < table.dimension(); ++axis) {
     if (!(box.hi[axis] > box.lo[axis])) {
       table.fail("hi",

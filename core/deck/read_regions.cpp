@@ -16,7 +16,7 @@ constexpr double kSlack = 1e-9;
 
 Box read_region(const TableReader& table, const Model& model) {
   const Node& node = *table.table("region");
-  const Box region = read_box(node, table.dimension(), "the region");
+  Box region = read_box(node, table.dimension(), "the region");
   check_inside(region, model, node.place(), "the region");
   return region;
 }

@@ -15,6 +15,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <barchan/core/base/host_name.hpp>
 #include <barchan/core/checkpoint/durable.hpp>
 
 namespace barchan {
@@ -27,12 +28,6 @@ struct Holder {
 
   [[nodiscard]] bool is_known() const { return pid > 0 && !host.empty(); }
 };
-
-std::string this_host() {
-  char name[256] = {};
-  (void)::gethostname(name, sizeof name - 1);
-  return name;
-}
 
 /// Field 22 of /proc/PID/stat; empty when there is no such process.
 std::string start_of(long pid) {
@@ -69,7 +64,7 @@ std::string describe(const Holder& holder) {
 
 /// For file systems without locks. Of a process on another host nothing is known, so it may live.
 bool may_live(const Holder& holder) {
-  if (!holder.is_known() || holder.host != this_host()) return true;
+  if (!holder.is_known() || holder.host != host_name()) return true;
   return start_of(holder.pid) == holder.started;
 }
 
@@ -92,7 +87,7 @@ void write_holder(const std::string& path, int fd) {
   const auto now =
       std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::system_clock::now());
   const std::string text =
-      fmt::format("host {}\npid {}\nstarted {}\nsince {:%Y-%m-%d %H:%M:%S} UTC\n", this_host(),
+      fmt::format("host {}\npid {}\nstarted {}\nsince {:%Y-%m-%d %H:%M:%S} UTC\n", host_name(),
                   ::getpid(), start_of(::getpid()), now);
   const bool is_written = ::ftruncate(fd, 0) == 0 && ::pwrite(fd, text.data(), text.size(), 0) ==
                                                          static_cast<ssize_t>(text.size());

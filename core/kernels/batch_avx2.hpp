@@ -28,8 +28,8 @@ struct BatchAvx2 {
     for (int h = 0; h < kQuads; ++h) Simd::transpose(r[h][0], r[h][1], r[h][2], r[h][3]);
     return constants_from<Law, Simd>(
         [&r](auto field) __attribute__((always_inline)) {
-          if constexpr (field.place < 4 * kQuads)
-            return r[field.place / 4][field.place % 4];
+          if constexpr (field.kPlace < 4 * kQuads)
+            return r[field.kPlace / 4][field.kPlace % 4];
           else
             return Real{};
         },

@@ -33,7 +33,7 @@ struct BatchAvx512 {
     if constexpr (OneRow) {
       return {constants_from<Law, Simd>(
           [&laws](auto field) __attribute__((always_inline)) {
-            return Simd::set(laws.rows[LawView::kRow + field.place]);
+            return Simd::set(laws.rows[LawView::kRow + field.kPlace]);
           },
           FieldsOf<Law>{})};
     } else {
@@ -58,10 +58,10 @@ struct BatchAvx512 {
     if (t.size <= LawView::kColumn) {
       return constants_from<Law, Simd>(
           [ lane, &t ](auto field) __attribute__((always_inline)) {
-            const Real c = t.column[field.place];
-            if constexpr (Law::is_common(field.place))
+            const Real c = t.column[field.kPlace];
+            if constexpr (Law::is_common(field.kPlace))
               return c;
-            else if constexpr (field.place < Law::fields_read(Level))
+            else if constexpr (field.kPlace < Law::fields_read(Level))
               return Real(_mm512_permutexvar_pd(lane, __m512d(c)));
             else
               return Real{};
@@ -71,8 +71,8 @@ struct BatchAvx512 {
     const __m512i row = _mm512_slli_epi64(lane, 4);
     return constants_from<Law, Simd>(
         [ row, &t ](auto field) __attribute__((always_inline)) {
-          if constexpr (field.place < Law::fields_read(Level))
-            return Real(_mm512_i64gather_pd(row, t.rows + field.place, 8));
+          if constexpr (field.kPlace < Law::fields_read(Level))
+            return Real(_mm512_i64gather_pd(row, t.rows + field.kPlace, 8));
           else
             return Real{};
         },

@@ -19,7 +19,7 @@ struct BatchScalar {
   static typename Law::template Constants<Simd> constants(const double* rows,
                                                           const std::uint8_t* code) {
     const double* r = rows + LawView::kRow * *code;
-    return constants_from<Law, Simd>([r](auto field) { return r[field.place]; }, FieldsOf<Law>{});
+    return constants_from<Law, Simd>([r](auto field) { return r[field.kPlace]; }, FieldsOf<Law>{});
   }
 
   static void gather(const PairJob& job, std::int64_t k, PairState<Simd, 2>& p) {

@@ -59,7 +59,7 @@ PairForce<simd::Scalar, Dim> respond_at(int level, const double* row,
   constexpr int kLength = Law::template kHistory<Dim>.length;
   static_assert(kLength <= kMostHistory);
   const auto constants = constants_from<Law, simd::Scalar>(
-      [row](auto field) { return row[decltype(field)::place]; }, FieldsOf<Law>{});
+      [row](auto field) { return row[decltype(field)::kPlace]; }, FieldsOf<Law>{});
   double numbers[kLength];
   std::copy_n(history, kLength, numbers);
   typename Law::template Force<simd::Scalar, Dim> force{};

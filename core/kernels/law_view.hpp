@@ -19,7 +19,7 @@ struct LawView {
 /// The place of a field in a row, known when a kernel is compiled.
 template <int F>
 struct LawField {
-  static constexpr int place = F;
+  static constexpr int kPlace = F;
 };
 
 template <class Law>

@@ -47,10 +47,22 @@ struct Scene {
   }
 };
 
-/// The stretch of a straight line, `half` to either side of a point, that lies in the domain's
-/// rectangle (x and `up`). @param clips  along which axes
-void add_clipped(const Domain& domain, int up, const std::array<bool, 3>& clips, const Vec3& point,
-                 const Vec3& along, double half, std::vector<PictureLine>& lines) {
+struct Window {
+  const Domain& domain;
+  int up;  ///< the axis across x
+};
+
+/// A straight line, `half` to either side of a point.
+struct Stretch {
+  Vec3 point, along;
+  double half;
+};
+
+/// What of a line lies in the window. @param clips  along which axes
+void add_clipped(const Window& window, const std::array<bool, 3>& clips, const Stretch& line,
+                 std::vector<PictureLine>& lines) {
+  const auto& [domain, up] = window;
+  const auto& [point, along, half] = line;
   double lo = -half, hi = half;
   for (const int axis : {0, up}) {
     if (!clips[static_cast<std::size_t>(axis)]) continue;
@@ -68,25 +80,25 @@ void add_clipped(const Domain& domain, int up, const std::array<bool, 3>& clips,
 }
 
 /// A plate and those of its images that reach into the domain.
-void add_images(const Domain& domain, int up, const Vec3& point, const Vec3& along, double half,
-                std::vector<PictureLine>& lines) {
+void add_images(const Window& window, const Stretch& plate, std::vector<PictureLine>& lines) {
+  const Domain& domain = window.domain;
   const Vec3 length = domain.hi - domain.lo;
   const auto images_along = [&](int axis) {
     std::vector<double> shifts{0.0};
     if (!domain.periodic[static_cast<std::size_t>(axis)]) return shifts;
-    const double home = -std::floor((point[axis] - domain.lo[axis]) / length[axis]);
+    const double home = -std::floor((plate.point[axis] - domain.lo[axis]) / length[axis]);
     const double reach =
-        std::min(kMostImages, std::ceil(std::fabs(along[axis]) * half / length[axis]));
+        std::min(kMostImages, std::ceil(std::fabs(plate.along[axis]) * plate.half / length[axis]));
     shifts.clear();
     for (double k = home - reach; k <= home + reach; ++k) shifts.push_back(k * length[axis]);
     return shifts;
   };
   for (const double x : images_along(0)) {
-    for (const double y : images_along(up)) {
-      Vec3 image = point;
-      image.x() += x;
-      image[up] += y;
-      add_clipped(domain, up, domain.periodic, image, along, half, lines);
+    for (const double y : images_along(window.up)) {
+      Stretch image = plate;
+      image.point.x() += x;
+      image.point[window.up] += y;
+      add_clipped(window, domain.periodic, image, lines);
     }
   }
 }
@@ -104,12 +116,12 @@ std::vector<PictureLine> wall_lines(const Simulation& simulation) {
     along.x() = -spec.normal[up];
     along[up] = spec.normal.x();
     if (spec.kind == WallKind::Plane) {
-      add_clipped(model.domain, up, {true, true, true}, state.point, along, 1e300, lines);
+      add_clipped({model.domain, up}, {true, true, true}, {state.point, along, 1e300}, lines);
     } else {
       // An upright plate in 3D has its width along the line of sight.
       const bool is_upright = model.dimension == 3 && std::fabs(spec.normal.x()) > 0.5;
       const double half = 0.5 * (is_upright ? spec.depth : spec.width);
-      add_images(model.domain, up, state.point, along, half, lines);
+      add_images({model.domain, up}, {state.point, along, half}, lines);
     }
   }
   return lines;

@@ -11,14 +11,10 @@
 #include <nlohmann/json.hpp>
 
 #include <barchan/comm/base/mpi_session.hpp>
+#include <barchan/core/base/host_name.hpp>
 
 namespace barchan {
 namespace {
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
-}
 
 std::string processor_name() {
   std::ifstream file("/proc/cpuinfo");
