@@ -9,7 +9,6 @@
 #include <barchan/comm/base/mpi_session.hpp>
 #include <barchan/core/base/clock.hpp>
 #include <barchan/core/base/error.hpp>
-#include <barchan/tasks/appearing_walls.hpp>
 #include <barchan/tasks/exchange_setup.hpp>
 #include <barchan/tasks/forecast.hpp>
 #include <barchan/tasks/parts_checkpoint.hpp>

@@ -14,6 +14,7 @@
 #include <Eigen/Eigenvalues>
 
 #include <barchan/core/base/error.hpp>
+#include <barchan/core/generators/close_pairs.hpp>
 #include <barchan/core/links/bonds.hpp>
 #include <barchan/core/model/mass.hpp>
 #include <barchan/core/model/relative_speed.hpp>
@@ -167,17 +168,6 @@ BondSection section_of(const Model& model, const BondLaw& law, double length, do
                               : bond_section<3>(law, length, r_a, r_b);
 }
 
-/// From a to b, by the nearest image.
-Vec3 between(const Domain& domain, const Vec3& a, const Vec3& b) {
-  Vec3 d = b - a;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double length = domain.hi[axis] - domain.lo[axis];
-    if (domain.periodic[static_cast<std::size_t>(axis)] && length > 0.0)
-      d[axis] -= length * std::rint(d[axis] / length);
-  }
-  return d;
-}
-
 struct BondEnd {
   const ParticleData& particle;
   Bonded& bonds;
@@ -186,7 +176,8 @@ void add_bond(const Model& model, const BondData& bond, const BondEnd& end_a,
               const BondEnd& end_b) {
   const ParticleData &a = end_a.particle, &b = end_b.particle;
   const BondLaw& law = model.bond_laws[static_cast<std::size_t>(bond.law)];
-  const Vec3 d = between(model.domain, a.position, b.position);
+  const PairSpace space{model.dimension, model.domain.lo, model.domain.hi, model.domain.periodic};
+  const Vec3 d = space.difference(b.position, a.position);
   const double length = d.norm();
   const double inverse =
       1.0 / mass_in_motion(a, model.dimension) + 1.0 / mass_in_motion(b, model.dimension);

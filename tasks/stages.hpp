@@ -4,6 +4,7 @@
 
 #include <barchan/core/checkpoint/state.hpp>
 #include <barchan/core/model/model.hpp>
+#include <barchan/tasks/run_parts.hpp>
 
 namespace barchan {
 
@@ -29,13 +30,25 @@ class Stages {
     begin_ = step;
   }
 
-  void save(CheckpointState& state) const;
-  void restore(const CheckpointState& state);
+  void save(CheckpointState& state) const {
+    state.stage = current_;
+    state.stage_begin = begin_;
+  }
+  void restore(const CheckpointState& state) {
+    current_ = state.stage;
+    begin_ = state.stage_begin;
+  }
 
  private:
   const Model& model_;
   int current_ = 0;
   std::int64_t begin_ = 0;  ///< step
 };
+
+/// Shows the walls of the present stage. @return whether one appeared, so that lists must be made
+/// anew. Collective. Errors: AgreedError for a wall that appears where a particle is: it would
+/// throw it out.
+template <int Dim>
+bool show_walls(RunParts<Dim>& run, const Stages& stages, std::int64_t step);
 
 }  // namespace barchan

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include <barchan/core/base/stopwatch.hpp>
+#include <barchan/core/base/clock.hpp>
 #include <barchan/core/brick/prefetch.hpp>
 
 namespace barchan {
