@@ -11,7 +11,8 @@
 namespace barchan {
 namespace {
 
-/// Fence, put, fence: one window per channel, and the n-th fence of all ranks closes message n of all.
+/// Fence, put, fence: one window per channel, and the n-th fence of all ranks closes message n of
+/// all.
 /// The fence is called by the first poll after both sides have been sent; it waits for every rank,
 /// so this exchange hides little, both sides go in step (no `return` scheme), every rank has a
 /// neighbour, and halo and bulk are not in flight at the same time.

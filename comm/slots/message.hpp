@@ -9,7 +9,8 @@
 
 namespace barchan {
 
-/// Halo and bulk messages travel in channels of their own: own slots, own sequence words, own numbers.
+/// Halo and bulk messages travel in channels of their own: own slots, own sequence words, own
+/// numbers.
 enum class Channel : int { Halo = 0, Bulk = 1 };
 inline constexpr int kNumChannels = 2;
 

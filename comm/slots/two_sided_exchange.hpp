@@ -8,8 +8,8 @@
 
 namespace barchan {
 
-/// Common to the exchanges that send and receive. The tag names the channel and the receiver's side,
-/// so that nothing is confused where both neighbours are the same rank.
+/// Common to the exchanges that send and receive. The tag names the channel and the receiver's
+/// side, so that nothing is confused where both neighbours are the same rank.
 class TwoSidedExchange : public SlotExchange {
  public:
   TwoSidedExchange(const Communicator& communicator, Neighbours neighbours);
