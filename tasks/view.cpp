@@ -81,9 +81,8 @@ void for_each_bond(Strip<Dim>& strip, const BondVisitor& visit) {
       const double *a = lane.brick.store.x(bonds.end_a(i)), *b = lane.brick.store.x(bonds.end_b(i));
       Vec3 first = Vec3::Zero(), second = Vec3::Zero();
       for (int c = 0; c < Dim; ++c) {
-        const double d = b[c] - a[c];
         first[c] = a[c];
-        second[c] = a[c] + (d - box.length[c] * std::rint(d * box.inverse[c]));
+        second[c] = a[c] + box.nearest(b[c] - a[c], c);
       }
       visit(data_of(bonds.bonds()[static_cast<std::size_t>(i)]), first, second);
     }

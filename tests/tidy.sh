@@ -42,9 +42,8 @@ export -f check_unit
 units() {
   local folder
   for folder in comm tasks app core/*/; do
-    find "$folder" -name '*.cpp' ! -name '*avx*' | sort | tr '\n' ' ' | sed "s|^|${folder%/} |"
-    echo
+    echo "${folder%/}" $(find "$folder" -name '*.cpp' ! -name '*avx*' | sort)
   done
   if [[ $(uname -m) == x86_64 ]]; then find core -name '*avx*.cpp' -printf '%p %p\n'; fi
 }
-units | grep '\.cpp' | grep -E "$pattern" | xargs -r -L 1 -P "$(nproc)" bash -c 'check_unit "$@"' check_unit
+units | grep ' ' | grep -E "$pattern" | xargs -r -L 1 -P "$(nproc)" bash -c 'check_unit "$@"' check_unit

@@ -115,8 +115,7 @@ void PassageWatch<Dim>::look_at(const PairList& pairs) const {
     if (i == store_.waste()) break;  // padding
     double d[Dim];
     for (int c = 0; c < Dim; ++c) {
-      d[c] = store_.x(j)[c] - store_.x(i)[c];
-      d[c] -= box.length[c] * std::rint(d[c] * box.inverse[c]);
+      d[c] = box.nearest(store_.x(j)[c] - store_.x(i)[c], c);
     }
     const double reach = store_.radius(i) + store_.radius(j);
     const Course course = course_of<Dim>(d, s, reach);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 
 #include <barchan/core/kernels/law_view.hpp>
@@ -10,6 +11,10 @@ namespace barchan {
 struct PeriodicBox {
   double length[3] = {0, 0, 0};
   double inverse[3] = {0, 0, 0};
+  /// A difference along an axis, to the nearest image.
+  [[nodiscard]] double nearest(double d, int axis) const {
+    return d - length[axis] * std::rint(d * inverse[axis]);
+  }
   [[nodiscard]] bool any() const { return inverse[0] != 0 || inverse[1] != 0 || inverse[2] != 0; }
 };
 

@@ -27,9 +27,7 @@ struct Ends {
   Ends(const ParticleStore<Dim>& s, std::int32_t a, std::int32_t b, double length,
        const PeriodicBox& box, double ratio) {
     for (int c = 0; c < Dim; ++c) {
-      double d = s.x(b)[c] - s.x(a)[c];
-      d -= box.length[c] * std::rint(d * box.inverse[c]);
-      normal[c] = d;
+      normal[c] = box.nearest(s.x(b)[c] - s.x(a)[c], c);
       velocity[c] = s.v(b)[c] - s.v(a)[c];
     }
     double d2 = 0.0;

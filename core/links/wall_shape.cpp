@@ -93,7 +93,7 @@ Vec3 WallShape<Dim>::arm(const Vec3& point, const WallImage& image, const double
   Vec3 arm = foot.to_foot - to_point(point, image, x);
   for (int c = 0; c < Dim; ++c) {
     if (box_.inverse[c] != 0.0 && !has_images_[static_cast<std::size_t>(c)])
-      arm[c] -= box_.length[c] * std::rint(arm[c] * box_.inverse[c]);
+      arm[c] = box_.nearest(arm[c], c);
   }
   return arm;
 }
