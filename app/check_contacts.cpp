@@ -93,10 +93,15 @@ std::vector<std::vector<std::string>> rows_of(const LoadedDeck& loaded, std::str
 }
 
 std::string describe(const ContactTable& contacts) {
-  if (contacts.law == 0) return "linear springs and dashpots, friction";
-  return fmt::format("Hertz, {}, friction", contacts.tangential == Tangential::Mindlin
-                                                ? "Mindlin by increments of force"
-                                                : "Mindlin by displacement");
+  return with_law(contacts.law, [&]<class Law>(Law /*law*/) {
+    std::string text = "linear springs and dashpots, friction";
+    if (Law::kStiffens)
+      text = fmt::format("Hertz, {}, friction", contacts.tangential == Tangential::Mindlin
+                                                    ? "Mindlin by increments of force"
+                                                    : "Mindlin by displacement");
+    if (Law::kRolls) text += ", rolling springs";
+    return contacts.twisting ? text + ", twisting" : text;
+  });
 }
 
 }  // namespace

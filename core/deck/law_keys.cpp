@@ -30,10 +30,16 @@ bool stands(const TableReader& table, const LawKey& key, bool is_pair) {
   return !(is_pair && key.is_of_material) && table.has(key.name);
 }
 
+[[noreturn]] void refuse_rolling(const TableReader& table, const LawKey& key) {
+  table.fail(key.name, fmt::format("'{}' has no place where contact.rolling = \"none\"", key.name),
+             "write rolling = \"spring\" in [contact], or leave it out");
+}
+
 template <class Law, class Other>
 void refuse_keys_of(const TableReader& table, bool is_pair) {
   for (const LawKey& key : Other::kKeys) {
     if (has_key<Law>(key.name) || !stands(table, key, is_pair)) continue;
+    if (key.is_of_rolling) refuse_rolling(table, key);
     table.fail(key.name,
                fmt::format("'{}' has no place where contact.model = \"{}\"", key.name, Law::kName),
                fmt::format("\"{}\" has {}; or write model = \"{}\" in [contact]", Law::kName,
@@ -62,14 +68,15 @@ void check_alternatives(const TableReader& table, bool is_pair) {
 
 }  // namespace
 
-std::string read_law_keys(int law, const TableReader& table, ContactConstants& to) {
+std::string read_law_keys(const LawChoice& choice, const TableReader& table, ContactConstants& to) {
   const bool is_pair = table.name() == "[[pair]]";
-  return with_law(law, [&]<class Law>(Law /*law*/) {
+  return with_law(choice.law, [&]<class Law>(Law /*law*/) {
     refuse_others<Law>(Laws{}, table, is_pair);
     check_alternatives<Law>(table, is_pair);
     std::string first;
     for (const LawKey& key : Law::kKeys) {
       if (!stands(table, key, is_pair)) continue;
+      if (key.is_of_rolling && !choice.rolls) refuse_rolling(table, key);
       if (first.empty()) first = key.name;
       key.set(to, key.range == LawKey::Range::Flag ? (table.boolean(key.name) ? 1.0 : 0.0)
                                                    : table.number(key.name));
@@ -78,20 +85,26 @@ std::string read_law_keys(int law, const TableReader& table, ContactConstants& t
   });
 }
 
-int read_law(const TableReader& contact) {
+LawChoice read_law(const TableReader& contact) {
   const std::string model = contact.string("model");
-  int law = 0;
-  while (with_law(law, [&]<class Law>(Law /*law*/) { return model != Law::kName; })) ++law;
-  if (const auto fault = find_law_fault(law, contact.dimension()))
-    contact.fail("model", fault->what, fault->remedy);
+  LawChoice choice;
+  choice.rolls = contact.string("rolling") != "none";
+  choice.twists = contact.string("twisting") != "none";
+  const bool turns = choice.rolls || choice.twists;
+  while (with_law(choice.law, [&]<class Law>(Law /*law*/) {
+    return model != Law::kName || turns != Law::kRolls;
+  }))
+    ++choice.law;
+  if (const auto fault = find_law_fault(choice.law, choice.twists, contact.dimension()))
+    contact.fail(fault->key == "contact.model" ? "model" : "twisting", fault->what, fault->remedy);
   const auto refuse = [&](const char* key, const char* remedy) {
-    if (law == 0 && contact.has(key))
+    if (model == "linear" && contact.has(key))
       contact.fail(key, fmt::format("'{}' has no place where contact.model = \"linear\"", key),
                    remedy);
   };
   refuse("tangential", "give materials tangential_stiffness in N/m, or write model = \"hertz\"");
   refuse("reference_speed", "leave it out: a linear spring is as stiff at any speed");
-  return law;
+  return choice;
 }
 
 }  // namespace barchan::deck

@@ -7,12 +7,19 @@
 
 namespace barchan::deck {
 
-/// Sets what a [[material]] or [[pair]] says for the law at a place of the list.
+/// What a deck chooses in [contact].
+struct LawChoice {
+  int law = 0;         ///< place in the list of laws
+  bool rolls = false;  ///< keys of rolling have a place
+  bool twists = false;
+};
+
+/// Sets what a [[material]] or [[pair]] says for a law.
 /// Errors: InputError for keys of other laws, and for two keys where one may stand.
 /// @return the first key that stands there; empty: none
-std::string read_law_keys(int law, const TableReader& table, ContactConstants& to);
+std::string read_law_keys(const LawChoice& choice, const TableReader& table, ContactConstants& to);
 
-/// What contact.model says. Errors: InputError where the law is not for disks.
-int read_law(const TableReader& contact);
+/// Errors: InputError where there is no such law in so many dimensions.
+LawChoice read_law(const TableReader& contact);
 
 }  // namespace barchan::deck

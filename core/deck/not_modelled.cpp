@@ -10,7 +10,8 @@ namespace barchan::deck {
 namespace {
 
 // Beginnings of words, in lower case and with a space before each word.
-constexpr std::string_view kRolling[] = {" rolling", " twisting", " torsion", " spinning"};
+constexpr std::string_view kTwisting[] = {" twisting f", " twisting s", " twisting d", " torsion",
+                                          " spinning"};
 constexpr std::string_view kCohesion[] = {
     " cohes",  " adhes",   " capillar",      " surface energy", " surface tension",
     " liquid", " suction", " contact angle", " pull off",       " jkr",
@@ -49,8 +50,10 @@ struct Group {
 };
 
 constexpr Group kGroups[] = {
-    {kRolling,
-     {"resistance to rolling and twisting is", "leave it out; `friction` acts on sliding alone"}},
+    {kTwisting,
+     {"twisting by constants of its own is",
+      "write twisting = \"marshall\" in [contact], which acts by friction and tangential "
+      "stiffness"}},
     {kCohesion,
      {"cohesion is",
       "leave it out; a [[bond]] has tensile_strength and shear_strength, and breaks for good"}},

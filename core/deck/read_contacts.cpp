@@ -1,4 +1,5 @@
 // Materials and the contact constants of every pair that can meet.
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -15,7 +16,7 @@ namespace {
 
 struct Rules {
   bool is_mixed = true;  ///< pairs without a [[pair]] take the constants of their materials
-  int law = 0;           ///< place in the list of laws
+  LawChoice choice;
   ContactRules contact;
   std::optional<double> reference_speed;
 };
@@ -26,7 +27,8 @@ Rules read_rules(const TableReader& root) {
   if (node == nullptr) return rules;
   const TableReader table(*node, root.dimension(), "[contact]");
   rules.is_mixed = table.string("mixing") == "harmonic";
-  rules.law = read_law(table);
+  rules.choice = read_law(table);
+  rules.contact.twisting = rules.choice.twists;
   rules.contact.no_tension = table.boolean("no_tension");
   if (table.string("tangential") == "mindlin-displacement")
     rules.contact.tangential = Tangential::MindlinDisplacement;
@@ -83,10 +85,10 @@ class ContactBuilder {
     for (const Node* node : root_.tables("material")) {
       const TableReader table(*node, root_.dimension(), "[[material]]");
       ContactConstants constants;
-      const std::string first = read_law_keys(rules_.law, table, constants);
+      const std::string first = read_law_keys(rules_.choice, table, constants);
       own_.push_back(first.empty() ? std::nullopt : std::optional(constants));
       if (first.empty()) continue;
-      if (const auto gap = find_gap(rules_.law, constants))
+      if (const auto gap = find_gap(rules_.choice.law, constants))
         table.fail(first, first + " " + gap->what, gap->remedy);
     }
   }
@@ -102,8 +104,9 @@ class ContactBuilder {
     ContactTable table;
     table.num_materials = static_cast<int>(num_);
     table.no_tension = rules_.contact.no_tension;
-    table.law = rules_.law;
+    table.law = rules_.choice.law;
     table.tangential = rules_.contact.tangential;
+    table.twisting = rules_.contact.twisting;
     table.reference_speed = rules_.reference_speed;
     table.constants.resize(num_ * num_);
     for (std::size_t a = 0; a < num_; ++a) {
@@ -112,10 +115,12 @@ class ContactBuilder {
         if (users.can_meet(a, b)) check_complete(a, b, constants);
         auto& pair = table.constants[a * num_ + b];
         pair = constants.value_or(ContactConstants{});
-        with_law(rules_.law, [&]<class Law>(Law /*law*/) { Law::solve(pair, rules_.contact); });
+        with_law(rules_.choice.law,
+                 [&]<class Law>(Law /*law*/) { Law::solve(pair, rules_.contact); });
         table.constants[b * num_ + a] = pair;
       }
     }
+    refuse_idle(table);
     return table;
   }
 
@@ -135,9 +140,9 @@ class ContactBuilder {
                  "keep one");
     }
     ContactConstants constants = base_of(a, b, table);
-    read_law_keys(rules_.law, table, constants);
+    read_law_keys(rules_.choice, table, constants);
     if (pairs_stand_alone()) {
-      if (const auto gap = find_gap(rules_.law, constants))
+      if (const auto gap = find_gap(rules_.choice.law, constants))
         table.fail("materials", "[[pair]] " + gap->what, gap->remedy);
     }
     if (table.has("restitution")) constants.is_mixed = false;
@@ -145,7 +150,8 @@ class ContactBuilder {
   }
 
   [[nodiscard]] bool pairs_stand_alone() const {
-    return with_law(rules_.law, []<class Law>(Law /*law*/) { return Law::kPairsStandAlone; });
+    return with_law(rules_.choice.law,
+                    []<class Law>(Law /*law*/) { return Law::kPairsStandAlone; });
   }
 
   /// What a [[pair]] begins with.
@@ -166,14 +172,16 @@ class ContactBuilder {
   /// @pre both materials have constants
   [[nodiscard]] ContactConstants mixed_of(std::size_t a, std::size_t b) const {
     if (a == b && pairs_stand_alone()) return *own_[a];
-    auto mixed = mix(rules_.law, *own_[a], *own_[b]);
+    auto mixed = mix(rules_.choice.law, *own_[a], *own_[b]);
     if (mixed) {
       mixed->is_mixed = a != b;
       return *mixed;
     }
     throw InputError(
         draft_.materials.place(static_cast<int>(b)),
-        fmt::format("{} give their damping in different ways, which do not mix", pair_name(a, b)),
+        fmt::format(
+            "{} give their damping or rolling stiffness in different ways, which do not mix",
+            pair_name(a, b)),
         fmt::format("give both a coefficient, both a rate or both a restitution, or add a {}",
                     pair_text(a, b)));
   }
@@ -183,6 +191,24 @@ class ContactBuilder {
     if (explicit_[a * num_ + b]) return explicit_[a * num_ + b];
     if ((a != b && !is_mixed) || !own_[a] || !own_[b]) return std::nullopt;
     return mixed_of(a, b);
+  }
+
+  /// What is chosen must act on some pair.
+  void refuse_idle(const ContactTable& table) const {
+    const auto has = [&](double ContactConstants::*number) {
+      return std::any_of(table.constants.begin(), table.constants.end(),
+                         [&](const ContactConstants& p) { return p.*number > 0.0; });
+    };
+    const Node* node = root_.table("contact");
+    const auto fail = [&](const char* key, const char* what, const char* remedy) {
+      TableReader(*node, root_.dimension(), "[contact]").fail(key, what, remedy);
+    };
+    if (rules_.choice.rolls && !has(&ContactConstants::mu_rolling))
+      fail("rolling", "rolling = \"spring\", and no pair of materials has rolling_friction",
+           "add rolling_friction to the materials, or leave rolling out");
+    if (rules_.choice.twists && !has(&ContactConstants::mu))
+      fail("twisting", "twisting acts by friction, and no pair of materials has friction",
+           "add friction to the materials, or leave twisting out");
   }
 
   void refuse_rigid_particles(const Users& users) const {
@@ -199,8 +225,8 @@ class ContactBuilder {
   void check_complete(std::size_t a, std::size_t b,
                       const std::optional<ContactConstants>& constants) const {
     if (!constants) fail_missing(a, b, rules_.is_mixed);
-    const char* key =
-        with_law(rules_.law, [&]<class Law>(Law /*law*/) { return Law::lacking(*constants); });
+    const char* key = with_law(rules_.choice.law,
+                               [&]<class Law>(Law /*law*/) { return Law::lacking(*constants); });
     if (key == nullptr) return;
     throw InputError(draft_.materials.place(static_cast<int>(b)),
                      fmt::format("contacts of {} have no {}", pair_name(a, b), key),

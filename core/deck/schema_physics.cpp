@@ -26,6 +26,12 @@ constexpr KeySpec kPhysicsKeys[] = {
      "the "
      "smaller area cannot bear; `mindlin-displacement` multiplies displacement by stiffness",
      "mindlin|mindlin-displacement"},
+    {"[contact]", "rolling", T::Choice, "", "none",
+     "`spring`: contacts resist to rolling, by `rolling_friction` and the keys beside it",
+     "none|spring"},
+    {"[contact]", "twisting", T::Choice, "", "none",
+     "`marshall`: contacts of spheres resist to twisting about their normal, by `friction`",
+     "none|marshall"},
     {"[contact]", "reference_speed", T::PositiveNumber, "m/s", "of the start and of falls",
      "of hertz contacts: the impact that the stable step allows for"},
     {"[contact]", "no_tension", T::Boolean, "", "true",

@@ -91,6 +91,35 @@ struct BatchAvx2 {
     p = {x[0], x[1], x[2], x[3], v[0], v[1], v[2], v[3], u[0], u[1], u[2], u[3]};
   }
 
+  /// Number `place` of the records of four particles.
+  BARCHAN_INLINE Real pick(const double* records, int stride, const std::int32_t* row, int place) {
+    return Real{at(records, stride, row[0])[place], at(records, stride, row[1])[place],
+                at(records, stride, row[2])[place], at(records, stride, row[3])[place]};
+  }
+
+  BARCHAN_INLINE void gather(const PairJob& job, std::int64_t k, TurningPair<Simd, 2>& p) {
+    gather(job, k, static_cast<PairState<Simd, 2>&>(p));
+    p.inverse_first = pick(job.motion, 8, job.i + k, 3);
+    p.inverse_second = pick(job.motion, 8, job.j + k, 3);
+    p.turn = pick(job.motion, 8, job.j + k, 6) * p.inverse_second -
+             pick(job.motion, 8, job.i + k, 6) * p.inverse_first;
+  }
+
+  BARCHAN_INLINE void gather(const PairJob& job, std::int64_t k, TurningPair<Simd, 3>& p) {
+    gather(job, k, static_cast<PairState<Simd, 3>&>(p));
+    Real u[4], w[4];
+    for (int q = 0; q < 4; ++q) {
+      u[q] = Simd::load(at(job.spin, 4, job.i[k + q]));
+      w[q] = Simd::load(at(job.spin, 4, job.j[k + q]));
+    }
+    Simd::transpose(u[0], u[1], u[2], u[3]);
+    Simd::transpose(w[0], w[1], w[2], w[3]);
+    p.inverse_first = u[3], p.inverse_second = w[3];
+    p.turn_x = w[0] * w[3] - u[0] * u[3];
+    p.turn_y = w[1] * w[3] - u[1] * u[3];
+    p.turn_z = w[2] * w[3] - u[2] * u[3];
+  }
+
   template <int Dim>
   BARCHAN_INLINE void gather_positions(const PairJob& job, std::int64_t k, Real& dx, Real& dy,
                                        Real& dz, Real& reach) {

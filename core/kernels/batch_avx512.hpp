@@ -147,6 +147,38 @@ struct BatchAvx512 {
     p = {c[0], c[1], c[2], c[3], c[4], c[5], c[6], c[7], u[0], u[1], u[2], u[3]};
   }
 
+  /// Number `place` of the records of eight particles.
+  BARCHAN_INLINE Real pick(const double* records, int stride, const std::int32_t* row, int place) {
+    const __m512i at =
+        _mm512_cvtepu32_epi64(_mm256_loadu_si256(reinterpret_cast<const __m256i*>(row)));
+    return Real(
+        _mm512_i64gather_pd(_mm512_mullo_epi64(at, _mm512_set1_epi64(stride)), records + place, 8));
+  }
+
+  BARCHAN_INLINE void gather(const PairJob& job, std::int64_t k, TurningPair<Simd, 2>& p) {
+    gather(job, k, static_cast<PairState<Simd, 2>&>(p));
+    p.inverse_first = pick(job.motion, 8, job.i + k, 3);
+    p.inverse_second = pick(job.motion, 8, job.j + k, 3);
+    p.turn = pick(job.motion, 8, job.j + k, 6) * p.inverse_second -
+             pick(job.motion, 8, job.i + k, 6) * p.inverse_first;
+  }
+
+  BARCHAN_INLINE void gather(const PairJob& job, std::int64_t k, TurningPair<Simd, 3>& p) {
+    gather(job, k, static_cast<PairState<Simd, 3>&>(p));
+    __m256d s[8], t[8];
+    for (int q = 0; q < 8; ++q) {
+      s[q] = _mm256_load_pd(job.spin + 4 * wide(job.i[k + q]));
+      t[q] = _mm256_load_pd(job.spin + 4 * wide(job.j[k + q]));
+    }
+    Real u[4], w[4];
+    transpose_halves(s, u);
+    transpose_halves(t, w);
+    p.inverse_first = u[3], p.inverse_second = w[3];
+    p.turn_x = w[0] * w[3] - u[0] * u[3];
+    p.turn_y = w[1] * w[3] - u[1] * u[3];
+    p.turn_z = w[2] * w[3] - u[2] * u[3];
+  }
+
   template <int Dim>
   BARCHAN_INLINE void gather_positions(const PairJob& job, std::int64_t k, Real& dx, Real& dy,
                                        Real& dz, Real& reach) {

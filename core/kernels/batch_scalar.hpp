@@ -37,6 +37,24 @@ struct BatchScalar {
          b[6] - a[6], a[7] + b[7], u[0] + w[0], u[1] + w[1], u[2] + w[2], u[3] + w[3]};
   }
 
+  static void gather(const PairJob& job, std::int64_t k, TurningPair<Simd, 2>& p) {
+    gather(job, k, static_cast<PairState<Simd, 2>&>(p));
+    const double* a = job.motion + 8 * static_cast<std::int64_t>(job.i[k]);
+    const double* b = job.motion + 8 * static_cast<std::int64_t>(job.j[k]);
+    p.inverse_first = a[3], p.inverse_second = b[3];
+    p.turn = b[6] * b[3] - a[6] * a[3];
+  }
+
+  static void gather(const PairJob& job, std::int64_t k, TurningPair<Simd, 3>& p) {
+    gather(job, k, static_cast<PairState<Simd, 3>&>(p));
+    const double* u = job.spin + 4 * static_cast<std::int64_t>(job.i[k]);
+    const double* w = job.spin + 4 * static_cast<std::int64_t>(job.j[k]);
+    p.inverse_first = u[3], p.inverse_second = w[3];
+    p.turn_x = w[0] * w[3] - u[0] * u[3];
+    p.turn_y = w[1] * w[3] - u[1] * u[3];
+    p.turn_z = w[2] * w[3] - u[2] * u[3];
+  }
+
   template <int Dim>
   static void gather_positions(const PairJob& job, std::int64_t k, double& dx, double& dy,
                                double& dz, double& reach) {

@@ -14,7 +14,7 @@ namespace barchan {
 /// A law for disks, or for spheres; no functions where it is not for them.
 template <int Dim>
 struct ContactLawIn {
-  using State = PairState<simd::Scalar, Dim>;
+  using State = TurningPair<simd::Scalar, Dim>;
   using Force = PairForce<simd::Scalar, Dim>;
 
   History history{};
@@ -51,7 +51,7 @@ namespace detail {
 /// The compile-time level is looked for.
 template <class Law, int Dim, int Level = 0>
 PairForce<simd::Scalar, Dim> respond_at(int level, const double* row,
-                                        const PairState<simd::Scalar, Dim>& pair, double dt,
+                                        const TurningPair<simd::Scalar, Dim>& pair, double dt,
                                         double* history) {
   if constexpr (Level + 1 < Law::kNumLevels) {
     if (level > Level) return respond_at<Law, Dim, Level + 1>(level, row, pair, dt, history);

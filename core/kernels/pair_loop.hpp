@@ -59,7 +59,7 @@ template <class S, int Length>
 template <class Law, class S, int Level, int Dim, class Force>
 [[gnu::always_inline]] inline typename S::Mask respond_with_history(
     double* kept, const typename Law::template Constants<S>& constants,
-    const PairState<S, Dim>& pair, typename S::Real dt, Force& force) {
+    const typename Law::template State<S, Dim>& pair, typename S::Real dt, Force& force) {
   constexpr int kLength = Law::template kHistory<Dim>.length;
   if constexpr (S::kWidth == 1 && kLength == 1) {  // in place: pairs that do not touch load nothing
     auto& number = *reinterpret_cast<typename S::Real(*)[1]>(kept);
@@ -84,7 +84,7 @@ void run_pairs(const PairJob& given) {
   const auto dt = S::set(job.dt);
   const auto tables = B::template tables<Law, kLevelOfLaw, kUniform>(job.laws);
   for (std::int64_t k = job.begin; k < job.end; k += S::kWidth) {
-    PairState<S, Dim> pair;
+    typename Law::template State<S, Dim> pair;
     B::gather(job, k, pair);
     if constexpr ((F & kPeriodic) != 0) {
       pair.dx = nearest_image<S>(pair.dx, job.box.length[0], job.box.inverse[0]);

@@ -27,6 +27,39 @@ struct PairState<S, 3> {
   Real ux, uy, uz, inverse_radius;
 };
 
+/// The same for laws that feel how the two turn against each other. Angular velocities [rad/s], second
+/// minus first.
+template <class S, int Dim>
+struct TurningPair;
+
+template <class S>
+struct TurningPair<S, 2> : PairState<S, 2> {
+  typename S::Real turn;                           ///< omega_j − omega_i
+  typename S::Real inverse_first, inverse_second;  ///< 1/r_i, 1/r_j
+};
+
+template <class S>
+struct TurningPair<S, 3> : PairState<S, 3> {
+  typename S::Real turn_x, turn_y, turn_z;
+  typename S::Real inverse_first, inverse_second;
+};
+
+/// What a law tells of a contact beside its force, for what is built on it.
+template <class S, int Dim>
+struct Touch;
+
+template <class S>
+struct Touch<S, 2> {
+  typename S::Real pressed;  ///< |fn| [N]
+  typename S::Real kt, ct;   ///< tangential stiffness and dashpot, now [N/m, N·s/m]
+};
+
+template <class S>
+struct Touch<S, 3> {
+  typename S::Real pressed, kt, ct, overlap;
+  typename S::Real nx, ny, nz;  ///< from the first to the second
+};
+
 /// Force on the first particle [N], and torque / radius on both; the second one gets the negative
 /// force. `size` is at least the largest component of either.
 template <class S, int Dim>

@@ -35,6 +35,12 @@ struct ContactConstants {
   double shear_star = 0.0;        ///< G* [Pa]
   double alpha = 0.0;             ///< of the normal dashpot alpha·sqrt(m_eff·4/3·E*·a)
   double tangential_ratio = 1.0;  ///< tangential over normal dashpot
+
+  // rolling
+  double mu_rolling = 0.0;  ///< largest moment over R·|fn|
+  double kr = 0.0;          ///< rolling stiffness [N/m], beside kr_ratio times the tangential one
+  double kr_ratio = 1.0;
+  double cr = 0.0;  ///< rolling dashpot [N·s/m]
 };
 
 /// How the tangential force of a Hertz contact follows a contact area that shrinks or grows.
@@ -47,6 +53,7 @@ enum class Tangential {
 struct ContactRules {
   bool no_tension = true;  ///< clamp the normal force at zero while particles part
   Tangential tangential = Tangential::Mindlin;
+  bool twisting = false;  ///< resistance to twisting, by those laws that have it
 };
 
 /// Two that meet.

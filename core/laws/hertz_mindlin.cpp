@@ -157,6 +157,10 @@ void HertzMindlin::write(const Pair& p, const ContactRules& rules, double* row) 
   row[Growth] = rules.tangential == Tangential::Mindlin ? 1.0 : kInfinite;
 }
 
+double HertzMindlin::tangential_stiffness(const double* row, const Overlap& overlap) {
+  return row[Kt] * std::sqrt(overlap.depth / overlap.inverse_radius);
+}
+
 double HertzMindlin::energy(const double* row, const History& /*history*/, const Overlap& overlap,
                             const double* numbers) {
   const double a = std::sqrt(overlap.depth / overlap.inverse_radius);

@@ -29,7 +29,7 @@ namespace barchan {
 struct HertzMindlin {
   static constexpr const char* kName = "hertz";
   /// Disks of unit thickness have no Hertz law.
-  static constexpr bool kIsForDisks = false;
+  static constexpr bool kIsForDisks = false, kRolls = false;
 
   // ---- what a deck says of a pair of materials (hertz_mindlin.cpp)
 
@@ -73,13 +73,17 @@ struct HertzMindlin {
   /// Along the normal, where the overlap of the impact is largest [N/m].
   static double stiffness(const Pair& p, const Impact& impact);
   static double dashpot(const Pair& p, const Impact& impact);  ///< there [N·s/m]
+  static double tangential_stiffness(const Pair& p, const Impact& impact) {
+    return acts(p) ? 4.0 * p.shear_star / p.young_star * stiffness(p, impact) : 0.0;
+  }
+  static double tangential_stiffness(const double* row, const Overlap& overlap);
   template <class Add>
   static void for_each_motion(const Pair& p, const Impact& impact, double spin_gain, Add&& add) {
     const double k = stiffness(p, impact), c = dashpot(p, impact), m = impact.mass;
     add("contact", m, k, 0.0);
     if (c > 0.0) add("damping", m, k, c);
     if (p.mu > 0.0)
-      add("tangential", m / (1.0 + spin_gain), 4.0 * p.shear_star / p.young_star * k,
+      add("tangential", m / (1.0 + spin_gain), tangential_stiffness(p, impact),
           p.tangential_ratio * c);
   }
   /// How long a wave along the surface of a particle takes to run around half of it [s]; 0 where
@@ -114,6 +118,8 @@ struct HertzMindlin {
   static constexpr History kHistory = Dim == 2 ? History{} : History{4, 0b0111};
   template <class S, int Dim>
   using Force = PairForce<S, Dim>;
+  template <class S, int Dim>
+  using State = PairState<S, Dim>;
 
   /// Stored in a contact [J]; in one that slid or turned, what its tangential force would give back.
   static double energy(const double* row, const History& history, const Overlap& overlap,
@@ -125,6 +131,14 @@ struct HertzMindlin {
                                                                 typename S::Real dt,
                                                                 typename S::Real (&s)[4],
                                                                 PairForce<S, 3>& out) {
+    Touch<S, 3> t;
+    return touch<S, Level>(c, p, dt, s, out, t);
+  }
+
+  template <class S, int Level>
+  [[gnu::always_inline]] static inline typename S::Mask touch(
+      const Constants<S>& c, const PairState<S, 3>& p, typename S::Real dt,
+      typename S::Real (&s)[4], PairForce<S, 3>& out, Touch<S, 3>& t) {
     using Real = typename S::Real;
     const Real zero = S::set(0.0);
     const Real d2 = p.dx * p.dx + p.dy * p.dy + p.dz * p.dz;
@@ -183,6 +197,7 @@ struct HertzMindlin {
     out.ty = nz * hx - nx * hz;
     out.tz = nx * hy - ny * hx;
     out.size = S::abs(fn) + limit;
+    t = {S::abs(fn), c.kt * a, viscous, overlap, nx, ny, nz};
     return touching;
   }
 };

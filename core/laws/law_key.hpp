@@ -18,6 +18,7 @@ struct LawKey {
   void (*set)(ContactConstants& pair, double value);  ///< a flag is 1 or 0
   int instead_of = -1;  ///< place of the key whose place it takes: of all such keys one may stand
   bool is_of_material = false;  ///< not a key of [[pair]]
+  bool is_of_rolling = false;
 };
 
 /// What constants lack, to follow what they have: "without normal_stiffness".

@@ -4,6 +4,7 @@
 
 #include <barchan/core/laws/hertz_mindlin.hpp>
 #include <barchan/core/laws/linear_spring.hpp>
+#include <barchan/core/laws/rolling.hpp>
 
 namespace barchan {
 
@@ -14,7 +15,8 @@ struct LawList {
 
 /// The laws of contact, a file each. Kernels, tables, checks, walls and measures follow from this
 /// list. A run has one of them.
-using Laws = LawList<LinearSpring, HertzMindlin>;
+using Laws =
+    LawList<LinearSpring, HertzMindlin, WithRolling<LinearSpring>, WithRolling<HertzMindlin>>;
 
 /// Whether a law is for disks, or for spheres.
 template <class Law, int Dim>

@@ -23,7 +23,7 @@ namespace barchan {
 /// doi:10.1680/geot.1979.29.1.47; the clamp is ours.
 struct LinearSpring {
   static constexpr const char* kName = "linear";
-  static constexpr bool kIsForDisks = true;
+  static constexpr bool kIsForDisks = true, kRolls = false;
 
   // ---- what a deck says of a pair of materials (linear_spring.cpp)
 
@@ -71,6 +71,10 @@ struct LinearSpring {
   /// Along the normal, where the overlap of the impact is largest [N/m].
   static double stiffness(const Pair& p, const Impact& /*impact*/) { return p.kn; }
   static double dashpot(const Pair& p, const Impact& impact);  ///< there [N·s/m]
+  static double tangential_stiffness(const Pair& p, const Impact& /*impact*/) { return p.kt; }
+  static double tangential_stiffness(const double* row, const Overlap& /*overlap*/) {
+    return row[Kt];
+  }
   /// Calls add(name, mass, stiffness, dashpot) for the motions of a pair [kg, N/m, N·s/m].
   /// @param spin_gain  m r² / I
   template <class Add>
@@ -129,6 +133,8 @@ struct LinearSpring {
   static constexpr History kHistory = Dim == 2 ? History{1, 0b0} : History{3, 0b111};
   template <class S, int Dim>
   using Force = PairForce<S, Dim>;
+  template <class S, int Dim>
+  using State = PairState<S, Dim>;
 
   /// Stored in the springs of a contact [J].
   static double energy(const double* row, const History& history, const Overlap& overlap,
@@ -142,12 +148,20 @@ struct LinearSpring {
   /// the pair does not touch
   /// @param out  of lanes that touch; of others any number
   /// @return which lanes touch
-  template <class S, int Level>
+  template <class S, int Level, int Dim, int Length>
   [[gnu::always_inline]] static inline typename S::Mask respond(const Constants<S>& c,
-                                                                const PairState<S, 2>& p,
+                                                                const PairState<S, Dim>& p,
                                                                 typename S::Real dt,
-                                                                typename S::Real (&s)[1],
-                                                                PairForce<S, 2>& out) {
+                                                                typename S::Real (&s)[Length],
+                                                                PairForce<S, Dim>& out) {
+    Touch<S, Dim> t;
+    return touch<S, Level>(c, p, dt, s, out, t);
+  }
+
+  template <class S, int Level>
+  [[gnu::always_inline]] static inline typename S::Mask touch(
+      const Constants<S>& c, const PairState<S, 2>& p, typename S::Real dt,
+      typename S::Real (&s)[1], PairForce<S, 2>& out, Touch<S, 2>& t) {
     using Real = typename S::Real;
     const Real zero = S::set(0.0);
     const Real d2 = p.dx * p.dx + p.dy * p.dy;
@@ -179,16 +193,15 @@ struct LinearSpring {
     out.fy = fn * ny + ft * nx;
     out.ft = ft;
     out.size = S::abs(fn) + limit;
+    t = {S::abs(fn), c.kt, damp.ct};
     return touching;
   }
 
   /// @param s  the tangential spring has three components, kept in the tangent plane
   template <class S, int Level>
-  [[gnu::always_inline]] static inline typename S::Mask respond(const Constants<S>& c,
-                                                                const PairState<S, 3>& p,
-                                                                typename S::Real dt,
-                                                                typename S::Real (&s)[3],
-                                                                PairForce<S, 3>& out) {
+  [[gnu::always_inline]] static inline typename S::Mask touch(
+      const Constants<S>& c, const PairState<S, 3>& p, typename S::Real dt,
+      typename S::Real (&s)[3], PairForce<S, 3>& out, Touch<S, 3>& t) {
     using Real = typename S::Real;
     const Real zero = S::set(0.0);
     const Real d2 = p.dx * p.dx + p.dy * p.dy + p.dz * p.dz;
@@ -237,6 +250,7 @@ struct LinearSpring {
     out.ty = nz * fx - nx * fz;
     out.tz = nx * fy - ny * fx;
     out.size = S::abs(fn) + limit;
+    t = {S::abs(fn), c.kt, damp.ct, p.reach - d, nx, ny, nz};
     return touching;
   }
 

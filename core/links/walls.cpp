@@ -33,18 +33,25 @@ Approach approach_of(const WallFoot& foot, const Vec3& normal, double radius) {
   return {-radius * normal, radius + (radius - foot.distance)};
 }
 
+/// The wall turns nowhere, and is flat.
 template <int Dim>
-PairState<S, Dim> pair_with_wall(const ParticleStore<Dim>& s, std::int32_t row, const Approach& to,
-                                 const Vec3& v) {
-  const double *w = s.v(row), *u = s.u(row);
+TurningPair<S, Dim> pair_with_wall(const ParticleStore<Dim>& s, std::int32_t row,
+                                   const Approach& to, const Vec3& v) {
+  const double *w = s.v(row), *u = s.u(row), ir = s.inverse_radius(row);
   const Vec3& d = to.to_wall;
   if constexpr (Dim == 2) {
-    return {d[0],        d[1], to.reach,        v[0] - w[0],
-            v[1] - w[1], u[0], to.inverse_mass, s.inverse_radius(row)};
+    return {{d[0], d[1], to.reach, v[0] - w[0], v[1] - w[1], u[0], to.inverse_mass, ir},
+            -u[0] * ir,
+            ir,
+            0.0};
   } else {
-    return {d[0],        d[1],        d[2],        to.reach,
-            v[0] - w[0], v[1] - w[1], v[2] - w[2], to.inverse_mass,
-            u[0],        u[1],        u[2],        s.inverse_radius(row)};
+    return {{d[0], d[1], d[2], to.reach, v[0] - w[0], v[1] - w[1], v[2] - w[2], to.inverse_mass,
+             u[0], u[1], u[2], ir},
+            -u[0] * ir,
+            -u[1] * ir,
+            -u[2] * ir,
+            ir,
+            0.0};
   }
 }
 

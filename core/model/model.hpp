@@ -45,7 +45,9 @@ struct ContactTable {
   /// Of an impact that the stable step allows for [m/s]; none: as fast as the start and falls make it.
   std::optional<double> reference_speed = std::nullopt;
 
-  [[nodiscard]] ContactRules rules() const { return {no_tension, tangential}; }
+  bool twisting = false;  ///< read by contacts that roll
+
+  [[nodiscard]] ContactRules rules() const { return {no_tension, tangential, twisting}; }
 
   [[nodiscard]] const ContactConstants& at(int a, int b) const {
     return constants[static_cast<std::size_t>(a) * static_cast<std::size_t>(num_materials) +

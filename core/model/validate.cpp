@@ -93,7 +93,7 @@ void check_contacts(const Model& model) {
   require(table.law >= 0 && table.law < Laws::kSize, "contact",
           fmt::format("contacts by law number {}", table.law),
           fmt::format("there are {}, which count from 0", Laws::kSize));
-  if (const auto fault = find_law_fault(table.law, model.dimension)) throw *fault;
+  if (const auto fault = find_law_fault(table.law, table.twisting, model.dimension)) throw *fault;
   if (table.reference_speed) positive("contact.reference_speed", *table.reference_speed);
   for (std::size_t a = 0; a < n; ++a) {
     const std::string key = fmt::format("material.{}.", a + 1);
@@ -239,8 +239,11 @@ void check(const Model& model) {
 
 }  // namespace
 
-std::optional<ModelFault> find_law_fault(int law, int dimension) {
+std::optional<ModelFault> find_law_fault(int law, bool twisting, int dimension) {
   return with_law(law, [&]<class Law>(Law /*law*/) -> std::optional<ModelFault> {
+    if (dimension == 2 && twisting)
+      return ModelFault{"contact.twisting", "twisting in 2D: disks turn about the third axis alone",
+                        "leave it out, or write dimension = 3 for spheres"};
     if (dimension == 3 || Law::kIsForDisks) return std::nullopt;
     return ModelFault{"contact.model",
                       fmt::format("contact.model = \"{}\" in 2D: a disk of unit thickness touches "

@@ -17,8 +17,8 @@ struct ModelFault {
   std::string key, what, remedy;
 };
 
-/// Whether the law at a place of the list is for so many dimensions. Pure.
-[[nodiscard]] std::optional<ModelFault> find_law_fault(int law, int dimension);
+/// Whether the law at a place of the list, with twisting, is for so many dimensions. Pure.
+[[nodiscard]] std::optional<ModelFault> find_law_fault(int law, bool twisting, int dimension);
 
 /// The first thing that no run could work with, whoever made the model: sizes that do not fit
 /// together, numbers that are not finite or of the wrong sign, a third component in 2D, indices

@@ -69,7 +69,10 @@ std::vector<Scenario> restart_scenarios() {
           strips_along_y(),
           plates_at_borders(),
           hertz_column(),
-          hertz_gas()};
+          hertz_gas(),
+          rolling_shear_flow(),
+          rolling_hertz_gas(),
+          rolling_column()};
 }
 
 class RestartOf : public testing::TestWithParam<int> {
@@ -122,7 +125,7 @@ TEST_P(RestartOf, GivesTheSameBitsOnAnyNumberOfRanksAndThreads) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenarios, RestartOf, testing::Range(0, 16));
+INSTANTIATE_TEST_SUITE_P(Scenarios, RestartOf, testing::Range(0, 19));
 
 /// Restarts from every step of a stretch, so from before, at and after rebuilds, with and without
 /// checks in flight.

@@ -296,6 +296,34 @@ inline Scenario hertz_gas() {
   return s;
 }
 
+/// Makes the contacts of a scenario resist to rolling and, in 3D, to twisting.
+inline void make_rolling(Scenario& s) {
+  s.model.contacts.law += 2;
+  s.model.contacts.twisting = s.model.dimension == 3;
+  for (ContactConstants& c : s.model.contacts.constants) c.mu_rolling = 0.1, c.cr = 0.2;
+}
+
+inline Scenario rolling_shear_flow() {
+  Scenario s = shear_flow();
+  s.name = "dense shear of disks that resist to rolling";
+  make_rolling(s);
+  return s;
+}
+
+inline Scenario rolling_hertz_gas() {
+  Scenario s = hertz_gas();
+  s.name = "3D gas of elastic materials with rolling and twisting, periodic";
+  make_rolling(s);
+  return s;
+}
+
+inline Scenario rolling_column() {
+  Scenario s = column_collapse();
+  s.name = "3D column collapse with rolling and twisting";
+  make_rolling(s);
+  return s;
+}
+
 /// @param num_materials  5 materials make 15 laws and the null law, more than a vector register
 /// holds
 inline Scenario many_laws(int num_materials, bool no_tension) {

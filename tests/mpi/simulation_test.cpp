@@ -260,6 +260,15 @@ TEST(SameBits, ElasticSpheresThatCollapseAndPile) {
   EXPECT_GT(expect_same_bits(hertz_column(), 3).contacts, 30);
 }
 
+TEST(SameBits, DisksThatResistToRolling) {
+  EXPECT_GT(expect_same_bits(rolling_shear_flow(), 4).contacts, 50);
+}
+
+TEST(SameBits, SpheresThatResistToRollingAndTwisting) {
+  EXPECT_GT(expect_same_bits(rolling_column(), 6).contacts, 30);
+  (void)expect_same_bits(rolling_hertz_gas(), 9);
+}
+
 TEST(SameBits, ElasticSpheresThatMeetAtCuts) {
   (void)expect_same_bits(hertz_gas(), 8);
 }

@@ -61,25 +61,42 @@ class RandomDeck:
         rng = self.rng
         self.materials = ["a", "b", "c"][: rng.randint(1, 3)]
         self.density = rng.choice((100.0, 1000.0, 2500.0))
-        kind = rng.choice(("normal_damping", "normal_damping_rate", "restitution"))
         self.stiffest, self.mass = 0.0, self.density * math.pi * (0.6 * RADIUS) ** 2
         if self.dimension == 3:
             self.mass *= 4 / 3 * 0.6 * RADIUS
+        self.is_hertz = self.dimension == 3 and rng.random() < 0.4
+        self.rolls = rng.random() < 0.4
+        kind = rng.choice(("normal_damping", "normal_damping_rate", "restitution"))
         for name in self.materials:
             kn = 10 ** rng.uniform(4, 5.5)
             self.stiffest = max(self.stiffest, kn)
-            critical = 2 * math.sqrt(kn * self.mass)
-            damping = {"normal_damping": rng.uniform(0, 0.4) * critical,
-                       "normal_damping_rate": rng.uniform(0, 0.4) * critical / self.mass,
-                       "restitution": rng.uniform(0.3, 1.0)}[kind]
-            self.table("[[material]]", name=f'"{name}"', density=self.density, normal_stiffness=kn,
-                       tangential_stiffness=rng.choice((0.0, rng.uniform(0.1, 1.0) * kn)),
-                       tangential_damping=rng.choice((None, 0.1 * critical)), friction=rng.choice((0.0, 0.3, 1.0)),
-                       **{kind: damping})
+            constants = self.hertz(kn) if self.is_hertz else self.linear(kn, kind)
+            self.table("[[material]]", name=f'"{name}"', density=self.density, friction=rng.choice((0.0, 0.3, 1.0)),
+                       rolling_friction=rng.choice((0.01, 0.2)) if self.rolls else None,
+                       rolling_damping=rng.choice((None, 0.5)) if self.rolls else None, **constants)
         if len(self.materials) > 1 and rng.random() < 0.4:
-            self.table("[[pair]]", materials='["a", "b"]', normal_stiffness=self.stiffest, friction=0.2,
-                       normal_damping=0.1 * math.sqrt(self.stiffest * self.mass))
-        self.table("[contact]", no_tension=rng.choice(("true", "false")))
+            constants = {"restitution": 0.4} if self.is_hertz else {
+                "normal_stiffness": self.stiffest, "normal_damping": 0.1 * math.sqrt(self.stiffest * self.mass)}
+            self.table("[[pair]]", materials='["a", "b"]', friction=0.2, **constants)
+        self.table("[contact]", no_tension=rng.choice(("true", "false")),
+                   model='"hertz"' if self.is_hertz else None,
+                   tangential=rng.choice((None, '"mindlin-displacement"')) if self.is_hertz else None,
+                   rolling='"spring"' if self.rolls else None)
+
+    def linear(self, kn, kind):
+        rng = self.rng
+        critical = 2 * math.sqrt(kn * self.mass)
+        damping = {"normal_damping": rng.uniform(0, 0.4) * critical,
+                   "normal_damping_rate": rng.uniform(0, 0.4) * critical / self.mass,
+                   "restitution": rng.uniform(0.3, 1.0)}[kind]
+        return {"normal_stiffness": kn, "tangential_stiffness": rng.choice((0.0, rng.uniform(0.1, 1.0) * kn)),
+                "tangential_damping": rng.choice((None, 0.1 * critical)), kind: damping}
+
+    def hertz(self, kn):
+        """As stiff as kn where spheres overlap by a twentieth of a radius."""
+        rng = self.rng
+        return {"young_modulus": 5.5 * kn / RADIUS, "poisson_ratio": rng.choice((-0.2, 0.0, 0.3, 0.5)),
+                "restitution": rng.uniform(0.3, 1.0), "tangential_damping_ratio": rng.choice((None, 0.2))}
 
     def draw_bonds(self):
         rng = self.rng

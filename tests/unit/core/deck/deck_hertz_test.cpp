@@ -107,6 +107,37 @@ TEST(HertzDeck, ReadsTheRulesOfContacts) {
   EXPECT_EQ(contacts.reference_speed, 3.0);
 }
 
+TEST(HertzDeck, ReadsRollingAndTwisting) {
+  const ContactTable contacts =
+      parse({{"model = \"hertz\"",
+              "model = \"hertz\"\nrolling = \"spring\"\ntwisting = \"marshall\""},
+             {"friction = 0.4", "friction = 0.4\nrolling_friction = 0.2"},
+             {"friction = 0.6",
+              "friction = 0.6\nrolling_friction = 0.1\n"
+              "rolling_stiffness_ratio = 4.0\nrolling_damping = 0.3"}})
+          .model.contacts;
+
+  EXPECT_TRUE(contacts.twisting);
+  EXPECT_EQ(contacts.at(0, 1).mu_rolling, 0.1);
+  EXPECT_EQ(contacts.at(0, 1).kr_ratio, 2.0);
+  EXPECT_EQ(contacts.at(0, 1).cr, 0.0) << "in series with none";
+  EXPECT_EQ(contacts.at(1, 1).cr, 0.3);
+  EXPECT_EQ(contacts.at(0, 2).mu_rolling, 0.0);
+}
+
+TEST(Deck, RefusesTwistingDisksAndMixedRollingStiffness) {
+  const auto expect = [](std::initializer_list<Edit> edits, const char* part) {
+    const std::string message = deck_test::error_of(edits);
+    EXPECT_NE(message.find(part), std::string::npos) << message;
+  };
+  expect({{"[[bond]]", "[contact]\ntwisting = \"marshall\"\n[[bond]]"}},
+         "test.toml:20:12: twisting in 2D: disks turn about the third axis alone");
+  expect({{"[[bond]]", "[contact]\nrolling = \"spring\"\n[[bond]]"},
+          {"friction = 0.5", "rolling_friction = 0.5\nrolling_stiffness = 1e3"},
+          {"friction = 0.6", "rolling_friction = 0.6"}},
+         "different ways, which do not mix");
+}
+
 TEST(HertzDeck, AsksForARestitutionOfPairsThatMeetAlone) {
   EXPECT_NO_THROW((void)parse({{"rigid = true\nrestitution = 0.5", "rigid = true"},
                                {"[[wall]]",
@@ -202,6 +233,26 @@ INSTANTIATE_TEST_SUITE_P(
               "restitution = 0.9\n",
               "",
               {"contacts of 'glass' and 'glass' have no restitution", "add restitution"}},
+        Wrong{"RollingWithoutASpring",
+              "friction = 0.4",
+              "friction = 0.4\nrolling_friction = 0.1",
+              {":17:20:", "'rolling_friction' has no place where contact.rolling = \"none\"",
+               "rolling = \"spring\""}},
+        Wrong{"RollingOfTwistingAlone",
+              "model = \"hertz\"",
+              "model = \"hertz\"\ntwisting = \"marshall\"\n[[pair]]\n"
+              "materials = [\"glass\", \"sand\"]\nrolling_damping = 0.1",
+              {":13:19:", "'rolling_damping' has no place where contact.rolling = \"none\""}},
+        Wrong{"RollingOfNobody",
+              "model = \"hertz\"",
+              "model = \"hertz\"\nrolling = \"spring\"",
+              {":10:11:", "no pair of materials has rolling_friction"}},
+        Wrong{"TwoRollingStiffnesses",
+              "model = \"hertz\"",
+              "model = \"hertz\"\nrolling = \"spring\"\n[[pair]]\n"
+              "materials = [\"glass\", \"sand\"]\nrolling_stiffness = 1e3\n"
+              "rolling_stiffness_ratio = 1.0",
+              {"both rolling_stiffness_ratio and rolling_stiffness"}},
         Wrong{"UnmixedPair",
               "model = \"hertz\"",
               "model = \"hertz\"\nmixing = \"none\"",

@@ -37,10 +37,8 @@ TEST(NotModelled, IsCalledThatInsteadOfAMisspeltKey) {
   struct Case {
     std::string key, physics;
   };
-  const std::vector<Case> cases{{"rolling_friction", "resistance to rolling and twisting is"},
-                                {"rolling_stiffness", "resistance to rolling and twisting is"},
-                                {"coefficientRollingFriction", "resistance to rolling"},
-                                {"twisting_friction", "resistance to rolling and twisting is"},
+  const std::vector<Case> cases{{"twisting_friction", "twisting by constants of its own is"},
+                                {"torsion_stiffness", "twisting by constants of its own is"},
                                 {"cohesion", "cohesion is"},
                                 {"cohesionEnergyDensity", "cohesion is"},
                                 {"surface_energy", "cohesion is"},

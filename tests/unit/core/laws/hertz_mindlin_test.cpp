@@ -102,7 +102,7 @@ TEST(HertzMindlin, GivesEachEndWhatItGetsWhenTheEndsSwap) {
   }
 }
 
-using State = PairState<simd::Scalar, 3>;
+using State = TurningPair<simd::Scalar, 3>;
 
 /// Two spheres of radius 1 and 3 along x, which are pressed by `overlap` and slide along y.
 State pressed(double overlap, double slide) {

@@ -34,6 +34,8 @@ struct HoldingSpring {
   static constexpr History kHistory{1, 0};
   template <class S, int Dim>
   using Force = PairForce<S, Dim>;
+  template <class S, int Dim>
+  using State = PairState<S, Dim>;
 
   static double energy(const double* row, const History& /*history*/, const Overlap& overlap,
                        const double* /*numbers*/) {

@@ -32,6 +32,8 @@ struct RollingSpring {
   static constexpr History kHistory = Dim == 2 ? History{2, 0b10} : History{6, 0b000111};
   template <class S, int Dim>
   using Force = PairForces<S, Dim>;
+  template <class S, int Dim>
+  using State = PairState<S, Dim>;
 
   static double energy(const double* row, const History& history, const Overlap& overlap,
                        const double* numbers) {
