@@ -99,6 +99,9 @@ std::string describe(const ContactTable& contacts) {
       text = fmt::format("Hertz, {}, friction", contacts.tangential == Tangential::Mindlin
                                                     ? "Mindlin by increments of force"
                                                     : "Mindlin by displacement");
+    constexpr const char* kAdhesion[] = {"", ", DMT adhesion", ", SJKR cohesion",
+                                         ", SJKR2 cohesion"};
+    text += kAdhesion[static_cast<int>(contacts.adhesion)];
     if (Law::kRolls) text += ", rolling springs";
     return contacts.twisting ? text + ", twisting" : text;
   });

@@ -60,7 +60,7 @@ void measure_pairs(const Brick<Dim>& brick, const PairList& list, const PairBloc
     double history[kMostHistory];
     for (int c = 0; c < law.history.length; ++c) history[c] = numbers[c * kBatch];
     m.elastic.add(law.energy(laws.row(list.code[k]),
-                             {overlap, store.inverse_radius(i) + store.inverse_radius(j)},
+                             {overlap, store.inverse_radius(i) + store.inverse_radius(j), reach},
                              history));
     m.max_overlap = std::max(m.max_overlap, overlap);
     m.max_overlap_share =
@@ -84,7 +84,7 @@ void measure_wall_contacts(const Brick<Dim>& brick, Measures& m) {
     const double* row = world.laws.row(
         world.laws.code(world.wall_specs[w].material, store.type[static_cast<std::size_t>(c.row)]));
     m.elastic.add(world.laws.law().template in<Dim>().energy(
-        row, {overlap, store.inverse_radius(c.row)}, c.history));
+        row, {overlap, store.inverse_radius(c.row), store.radius(c.row)}, c.history));
     m.max_overlap = std::max(m.max_overlap, overlap);
     m.max_overlap_share = std::max(m.max_overlap_share, overlap / store.radius(c.row));
   }

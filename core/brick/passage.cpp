@@ -126,8 +126,8 @@ void PassageWatch<Dim>::look_at(const PairList& pairs) const {
     if (p.second.id < p.first.id) std::swap(p.first, p.second);
     p.travel = std::sqrt(s2);
     p.mass = 1.0 / (store_.inverse_mass(i) + store_.inverse_mass(j));
-    p.stiffness = stiffness(pairs.code[k],
-                            {least_radius, store_.inverse_radius(i) + store_.inverse_radius(j)});
+    p.stiffness = stiffness(
+        pairs.code[k], {least_radius, store_.inverse_radius(i) + store_.inverse_radius(j), reach});
     found_.add(p);
   }
 }
@@ -166,7 +166,7 @@ void PassageWatch<Dim>::look_at(std::span<const WallContact<Dim>> contacts, Rows
     p.mass = 1.0 / (store_.inverse_mass(it->row) + (spec.is_loaded ? 1.0 / spec.mass : 0.0));
     p.stiffness =
         stiffness(world_.laws.code(spec.material, store_.type[static_cast<std::size_t>(it->row)]),
-                  {radius, store_.inverse_radius(it->row)});
+                  {radius, store_.inverse_radius(it->row), radius});
     found_.add(p);
   }
 }

@@ -49,7 +49,9 @@ void put_contacts(ByteWriter& out, const ContactTable& table) {
   out.put(table.no_tension);
   with_law(table.law, [&]<class Law>(Law /*law*/) {
     // The first law goes without its name: checkpoints are older than the list.
-    if (table.law != 0) out.put(table.law), out.put(table.tangential), out.put(table.twisting);
+    if (table.law != 0)
+      out.put(table.law), out.put(table.tangential), out.put(table.twisting),
+          out.put(table.adhesion);
     for (const typename Law::Pair& pair : table.constants)
       Law::for_each_number(pair, [&](const char* /*key*/, double value) { out.put(value); });
   });

@@ -2,6 +2,7 @@
 #include <barchan/core/deck/law_keys.hpp>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -14,14 +15,15 @@ namespace {
 
 template <class Law>
 bool has_key(const char* name) {
-  return std::any_of(std::begin(Law::kKeys), std::end(Law::kKeys),
+  return std::any_of(std::begin(Law::keys()), std::end(Law::keys()),
                      [&](const LawKey& key) { return std::string(key.name) == name; });
 }
 
 template <class Law>
 std::string keys_of() {
   std::string names;
-  for (const LawKey& key : Law::kKeys) names += (names.empty() ? "" : ", ") + std::string(key.name);
+  for (const LawKey& key : Law::keys())
+    names += (names.empty() ? "" : ", ") + std::string(key.name);
   return names;
 }
 
@@ -30,16 +32,48 @@ bool stands(const TableReader& table, const LawKey& key, bool is_pair) {
   return !(is_pair && key.is_of_material) && table.has(key.name);
 }
 
-[[noreturn]] void refuse_rolling(const TableReader& table, const LawKey& key) {
-  table.fail(key.name, fmt::format("'{}' has no place where contact.rolling = \"none\"", key.name),
-             "write rolling = \"spring\" in [contact], or leave it out");
+/// Why a key has no place, and what would give it one; empty where only the model is wrong.
+std::array<std::string, 2> choice_for(LawKey::Part part) {
+  switch (part) {
+    case LawKey::Part::Rolling:
+      return {"rolling", "\"spring\""};
+    case LawKey::Part::Dmt:
+      return {"adhesion", "\"dmt\""};
+    case LawKey::Part::Sjkr:
+      return {"adhesion", "\"sjkr\" or \"sjkr2\""};
+    case LawKey::Part::Law:
+      break;
+  }
+  return {};
+}
+
+bool is_chosen(const LawChoice& choice, LawKey::Part part) {
+  switch (part) {
+    case LawKey::Part::Rolling:
+      return choice.rolls;
+    case LawKey::Part::Dmt:
+      return choice.adhesion == Adhesion::Dmt;
+    case LawKey::Part::Sjkr:
+      return choice.adhesion == Adhesion::Sjkr || choice.adhesion == Adhesion::Sjkr2;
+    case LawKey::Part::Law:
+      break;
+  }
+  return true;
+}
+
+void refuse_unchosen(const LawChoice& choice, const TableReader& table, const LawKey& key) {
+  if (is_chosen(choice, key.part)) return;
+  const auto [chooser, wanted] = choice_for(key.part);
+  table.fail(key.name,
+             fmt::format("'{}' has no place without contact.{} = {}", key.name, chooser, wanted),
+             fmt::format("write {} = {} in [contact], or leave it out", chooser, wanted));
 }
 
 template <class Law, class Other>
-void refuse_keys_of(const TableReader& table, bool is_pair) {
-  for (const LawKey& key : Other::kKeys) {
+void refuse_keys_of(const LawChoice& choice, const TableReader& table, bool is_pair) {
+  for (const LawKey& key : Other::keys()) {
     if (has_key<Law>(key.name) || !stands(table, key, is_pair)) continue;
-    if (key.is_of_rolling) refuse_rolling(table, key);
+    refuse_unchosen(choice, table, key);
     table.fail(key.name,
                fmt::format("'{}' has no place where contact.model = \"{}\"", key.name, Law::kName),
                fmt::format("\"{}\" has {}; or write model = \"{}\" in [contact]", Law::kName,
@@ -48,22 +82,29 @@ void refuse_keys_of(const TableReader& table, bool is_pair) {
 }
 
 template <class Law, class... Ls>
-void refuse_others(LawList<Ls...> /*laws*/, const TableReader& table, bool is_pair) {
-  (refuse_keys_of<Law, Ls>(table, is_pair), ...);
+void refuse_others(LawList<Ls...> /*laws*/, const LawChoice& choice, const TableReader& table,
+                   bool is_pair) {
+  (refuse_keys_of<Law, Ls>(choice, table, is_pair), ...);
 }
 
 /// Refuses two keys where only one may stand.
 template <class Law>
 void check_alternatives(const TableReader& table, bool is_pair) {
   const auto group = [](std::size_t k) {
-    return Law::kKeys[k].instead_of >= 0 ? Law::kKeys[k].instead_of : static_cast<int>(k);
+    return Law::keys()[k].instead_of >= 0 ? Law::keys()[k].instead_of : static_cast<int>(k);
   };
-  for (std::size_t k = 0; k < Law::kKeys.size(); ++k) {
-    for (std::size_t other = k + 1; other < Law::kKeys.size(); ++other) {
-      if (group(k) != group(other) || (is_pair && Law::kKeys[k].is_of_material)) continue;
-      table.has_one_of(Law::kKeys[k].name, Law::kKeys[other].name);
+  for (std::size_t k = 0; k < Law::keys().size(); ++k) {
+    for (std::size_t other = k + 1; other < Law::keys().size(); ++other) {
+      if (group(k) != group(other) || (is_pair && Law::keys()[k].is_of_material)) continue;
+      table.has_one_of(Law::keys()[k].name, Law::keys()[other].name);
     }
   }
+}
+
+Adhesion adhesion_of(const std::string& word) {
+  if (word == "dmt") return Adhesion::Dmt;
+  if (word == "sjkr") return Adhesion::Sjkr;
+  return word == "sjkr2" ? Adhesion::Sjkr2 : Adhesion::None;
 }
 
 }  // namespace
@@ -71,12 +112,12 @@ void check_alternatives(const TableReader& table, bool is_pair) {
 std::string read_law_keys(const LawChoice& choice, const TableReader& table, ContactConstants& to) {
   const bool is_pair = table.name() == "[[pair]]";
   return with_law(choice.law, [&]<class Law>(Law /*law*/) {
-    refuse_others<Law>(Laws{}, table, is_pair);
+    refuse_others<Law>(Laws{}, choice, table, is_pair);
     check_alternatives<Law>(table, is_pair);
     std::string first;
-    for (const LawKey& key : Law::kKeys) {
+    for (const LawKey& key : Law::keys()) {
       if (!stands(table, key, is_pair)) continue;
-      if (key.is_of_rolling && !choice.rolls) refuse_rolling(table, key);
+      refuse_unchosen(choice, table, key);
       if (first.empty()) first = key.name;
       key.set(to, key.range == LawKey::Range::Flag ? (table.boolean(key.name) ? 1.0 : 0.0)
                                                    : table.number(key.name));
@@ -90,9 +131,13 @@ LawChoice read_law(const TableReader& contact) {
   LawChoice choice;
   choice.rolls = contact.string("rolling") != "none";
   choice.twists = contact.string("twisting") != "none";
-  const bool turns = choice.rolls || choice.twists;
+  choice.adhesion = adhesion_of(contact.string("adhesion"));
+  const bool turns = choice.rolls || choice.twists, sticks = choice.adhesion != Adhesion::None;
+  if (sticks && model == "linear")
+    contact.fail("adhesion", "linear contacts do not stick",
+                 "write model = \"hertz\", or leave adhesion out");
   while (with_law(choice.law, [&]<class Law>(Law /*law*/) {
-    return model != Law::kName || turns != Law::kRolls;
+    return model != Law::kName || turns != Law::kRolls || sticks != Law::kSticks;
   }))
     ++choice.law;
   if (const auto fault = find_law_fault(choice.law, choice.twists, contact.dimension()))

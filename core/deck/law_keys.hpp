@@ -12,6 +12,7 @@ struct LawChoice {
   int law = 0;         ///< place in the list of laws
   bool rolls = false;  ///< keys of rolling have a place
   bool twists = false;
+  Adhesion adhesion = Adhesion::None;
 };
 
 /// Sets what a [[material]] or [[pair]] says for a law.

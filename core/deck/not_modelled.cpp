@@ -13,9 +13,8 @@ namespace {
 constexpr std::string_view kTwisting[] = {" twisting f", " twisting s", " twisting d", " torsion",
                                           " spinning"};
 constexpr std::string_view kCohesion[] = {
-    " cohes",  " adhes",   " capillar",      " surface energy", " surface tension",
-    " liquid", " suction", " contact angle", " pull off",       " jkr",
-    " dmt",    " van der", " bond number",   " work of"};
+    " capillar", " surface tension", " liquid",      " suction", " contact angle", " pull off",
+    " jkr",      " van der",         " bond number", " work of", " adhesive",      " cohesive"};
 constexpr std::string_view kElastic[] = {" elastic mod", " shear modulus", " bulk modulus"};
 constexpr std::string_view kPoisson[] = {" poisson"};
 constexpr std::string_view kLaws[] = {" contact law", " contact model", " law", " hysteresis",
@@ -55,8 +54,9 @@ constexpr Group kGroups[] = {
       "write twisting = \"marshall\" in [contact], which acts by friction and tangential "
       "stiffness"}},
     {kCohesion,
-     {"cohesion is",
-      "leave it out; a [[bond]] has tensile_strength and shear_strength, and breaks for good"}},
+     {"adhesion beyond touch (JKR, liquid bridges) is",
+      "write adhesion = \"dmt\" or \"sjkr\" in [contact] of hertz contacts, with surface_energy or "
+      "cohesion_density; a [[bond]] breaks for good"}},
     {kElastic,
      {"elasticity by any moduli but Young's modulus and Poisson's ratio is",
       "give young_modulus and poisson_ratio to materials, with model = \"hertz\" in [contact]; a "

@@ -29,6 +29,7 @@ Rules read_rules(const TableReader& root) {
   rules.is_mixed = table.string("mixing") == "harmonic";
   rules.choice = read_law(table);
   rules.contact.twisting = rules.choice.twists;
+  rules.contact.adhesion = rules.choice.adhesion;
   rules.contact.no_tension = table.boolean("no_tension");
   if (table.string("tangential") == "mindlin-displacement")
     rules.contact.tangential = Tangential::MindlinDisplacement;
@@ -107,6 +108,7 @@ class ContactBuilder {
     table.law = rules_.choice.law;
     table.tangential = rules_.contact.tangential;
     table.twisting = rules_.contact.twisting;
+    table.adhesion = rules_.contact.adhesion;
     table.reference_speed = rules_.reference_speed;
     table.constants.resize(num_ * num_);
     for (std::size_t a = 0; a < num_; ++a) {
@@ -206,6 +208,14 @@ class ContactBuilder {
     if (rules_.choice.rolls && !has(&ContactConstants::mu_rolling))
       fail("rolling", "rolling = \"spring\", and no pair of materials has rolling_friction",
            "add rolling_friction to the materials, or leave rolling out");
+    const Adhesion adhesion = rules_.choice.adhesion;
+    if (adhesion == Adhesion::Dmt && !has(&ContactConstants::surface_energy))
+      fail("adhesion", "adhesion = \"dmt\", and no pair of materials has surface_energy",
+           "add surface_energy in J/m² to the materials, or leave adhesion out");
+    if (adhesion != Adhesion::None && adhesion != Adhesion::Dmt &&
+        !has(&ContactConstants::cohesion_density))
+      fail("adhesion", "adhesion by area, and no pair of materials has cohesion_density",
+           "add cohesion_density in J/m³ to the materials, or leave adhesion out");
     if (rules_.choice.twists && !has(&ContactConstants::mu))
       fail("twisting", "twisting acts by friction, and no pair of materials has friction",
            "add friction to the materials, or leave twisting out");

@@ -32,6 +32,10 @@ constexpr KeySpec kPhysicsKeys[] = {
     {"[contact]", "twisting", T::Choice, "", "none",
      "`marshall`: contacts of spheres resist to twisting about their normal, by `friction`",
      "none|marshall"},
+    {"[contact]", "adhesion", T::Choice, "", "none",
+     "of hertz contacts, while they touch: `dmt` pulls by `surface_energy`, `sjkr` and `sjkr2` by "
+     "`cohesion_density`",
+     "none|dmt|sjkr|sjkr2"},
     {"[contact]", "reference_speed", T::PositiveNumber, "m/s", "of the start and of falls",
      "of hertz contacts: the impact that the stable step allows for"},
     {"[contact]", "no_tension", T::Boolean, "", "true",
@@ -105,7 +109,7 @@ T type_of(LawKey::Range range) {
 /// Laws may share keys: the first one explains them.
 template <class Law, class... Rest>
 void add_keys(LawList<Law, Rest...> /*laws*/, std::vector<KeySpec>& to) {
-  for (const LawKey& key : Law::kKeys) {
+  for (const LawKey& key : Law::keys()) {
     const bool is_known =
         std::any_of(to.begin(), to.end(), [&](const KeySpec& k) { return k.key == key.name; });
     if (is_known) continue;

@@ -41,6 +41,10 @@ struct ContactConstants {
   double kr = 0.0;          ///< rolling stiffness [N/m], beside kr_ratio times the tangential one
   double kr_ratio = 1.0;
   double cr = 0.0;  ///< rolling dashpot [N·s/m]
+
+  // adhesion
+  double surface_energy = 0.0;    ///< gamma [J/m²]
+  double cohesion_density = 0.0;  ///< [J/m³]
 };
 
 /// How the tangential force of a Hertz contact follows a contact area that shrinks or grows.
@@ -49,11 +53,15 @@ enum class Tangential {
   MindlinDisplacement  ///< stiffness times displacement
 };
 
+/// What pulls in Hertz contacts that stick.
+enum class Adhesion { None, Dmt, Sjkr, Sjkr2 };
+
 /// Rules for all contacts of a run.
 struct ContactRules {
   bool no_tension = true;  ///< clamp the normal force at zero while particles part
   Tangential tangential = Tangential::Mindlin;
   bool twisting = false;  ///< resistance to twisting, by those laws that have it
+  Adhesion adhesion = Adhesion::None;
 };
 
 /// Two that meet.
@@ -67,6 +75,7 @@ struct Impact {
 struct Overlap {
   double depth = 0.0;           ///< [m]
   double inverse_radius = 0.0;  ///< 1/r_i + 1/r_j [1/m]
+  double reach = 0.0;           ///< r_i + r_j, at a wall r_i [m]
 };
 
 }  // namespace barchan

@@ -29,13 +29,14 @@ namespace barchan {
 struct HertzMindlin {
   static constexpr const char* kName = "hertz";
   /// Disks of unit thickness have no Hertz law.
-  static constexpr bool kIsForDisks = false, kRolls = false;
+  static constexpr bool kIsForDisks = false, kRolls = false, kSticks = false;
 
   // ---- what a deck says of a pair of materials (hertz_mindlin.cpp)
 
   using Pair = ContactConstants;
   static constexpr int kNumKeys = 6;
   static const std::array<LawKey, kNumKeys> kKeys;
+  static const auto& keys() { return kKeys; }
   /// A [[pair]] changes some of what follows from its two materials.
   static constexpr bool kPairsStandAlone = false;
 
@@ -139,6 +140,27 @@ struct HertzMindlin {
   [[gnu::always_inline]] static inline typename S::Mask touch(
       const Constants<S>& c, const PairState<S, 3>& p, typename S::Real dt,
       typename S::Real (&s)[4], PairForce<S, 3>& out, Touch<S, 3>& t) {
+    return touch_of<HertzMindlin, S>(c, p, dt, s, out, t);
+  }
+
+  /// What adhesion goes by; `elastic` is Hertz's force.
+  template <class S>
+  struct Pressed {
+    typename S::Real radius, overlap, d, inverse, reach, elastic;
+  };
+  /// Hertz contacts do not stick.
+  template <class S>
+  [[gnu::always_inline]] static inline void adhere(const Constants<S>& /*c*/,
+                                                   const Pressed<S>& /*x*/,
+                                                   typename S::Real& /*fn*/,
+                                                   typename S::Real& /*pressed*/) {}
+
+ protected:
+  /// @tparam Law  this one, or one that sticks, which adds to fn
+  template <class Law, class S>
+  [[gnu::always_inline]] static inline typename S::Mask touch_of(
+      const typename Law::template Constants<S>& c, const PairState<S, 3>& p, typename S::Real dt,
+      typename S::Real (&s)[4], PairForce<S, 3>& out, Touch<S, 3>& t) {
     using Real = typename S::Real;
     const Real zero = S::set(0.0);
     const Real d2 = p.dx * p.dx + p.dy * p.dy + p.dz * p.dz;
@@ -156,8 +178,11 @@ struct HertzMindlin {
     const Real vn = p.vx * nx + p.vy * ny + p.vz * nz;
     const Real a = S::sqrt(radius * overlap);
     const Real damping = c.damping * S::sqrt(mass * a);
-    const Real normal = damping * vn - c.kn * a * overlap;
-    const Real fn = S::select(S::less(c.cap, normal), c.cap, normal);
+    const Real elastic = c.kn * a * overlap;
+    const Real normal = damping * vn - elastic;
+    Real fn = S::select(S::less(c.cap, normal), c.cap, normal);
+    Real pressed = S::abs(fn);
+    Law::template adhere<S>(c, {radius, overlap, d, inverse, p.reach, elastic}, fn, pressed);
 
     const Real tx = p.vx - vn * nx - (p.uy * nz - p.uz * ny);
     const Real ty = p.vy - vn * ny - (p.uz * nx - p.ux * nz);
@@ -175,7 +200,7 @@ struct HertzMindlin {
     const Real viscous = c.tangential_ratio * damping;
     const Real gx = viscous * tx, gy = viscous * ty, gz = viscous * tz;
     Real hx = fx + gx, hy = fy + gy, hz = fz + gz;
-    const Real h2 = hx * hx + hy * hy + hz * hz, limit = c.mu * S::abs(fn);
+    const Real h2 = hx * hx + hy * hy + hz * hz, limit = c.mu * pressed;
     const auto sliding = S::less(limit * limit, h2);
     if (S::any(sliding)) {
       const Real cut = S::select(sliding, limit / S::sqrt(h2), S::set(1.0));
@@ -197,7 +222,7 @@ struct HertzMindlin {
     out.ty = nz * hx - nx * hz;
     out.tz = nx * hy - ny * hx;
     out.size = S::abs(fn) + limit;
-    t = {S::abs(fn), c.kt * a, viscous, overlap, nx, ny, nz};
+    t = {pressed, c.kt * a, viscous, overlap, nx, ny, nz};
     return touching;
   }
 };

@@ -2,6 +2,7 @@
 
 #include <type_traits>
 
+#include <barchan/core/laws/hertz_adhesive.hpp>
 #include <barchan/core/laws/hertz_mindlin.hpp>
 #include <barchan/core/laws/linear_spring.hpp>
 #include <barchan/core/laws/rolling.hpp>
@@ -15,8 +16,8 @@ struct LawList {
 
 /// The laws of contact, a file each. Kernels, tables, checks, walls and measures follow from this
 /// list. A run has one of them.
-using Laws =
-    LawList<LinearSpring, HertzMindlin, WithRolling<LinearSpring>, WithRolling<HertzMindlin>>;
+using Laws = LawList<LinearSpring, HertzMindlin, WithRolling<LinearSpring>,
+                     WithRolling<HertzMindlin>, HertzAdhesive, WithRolling<HertzAdhesive>>;
 
 /// Whether a law is for disks, or for spheres.
 template <class Law, int Dim>

@@ -23,7 +23,7 @@ namespace barchan {
 /// doi:10.1680/geot.1979.29.1.47; the clamp is ours.
 struct LinearSpring {
   static constexpr const char* kName = "linear";
-  static constexpr bool kIsForDisks = true, kRolls = false;
+  static constexpr bool kIsForDisks = true, kRolls = false, kSticks = false;
 
   // ---- what a deck says of a pair of materials (linear_spring.cpp)
 
@@ -31,6 +31,7 @@ struct LinearSpring {
   static constexpr int kNumKeys = 8;
   /// Keys of [[material]] and [[pair]].
   static const std::array<LawKey, kNumKeys> kKeys;
+  static const auto& keys() { return kKeys; }
   /// A [[pair]] says all of its two materials.
   static constexpr bool kPairsStandAlone = true;
   /// What a material still has to say; none: nothing.

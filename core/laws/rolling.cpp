@@ -24,15 +24,18 @@ const std::array<LawKey, RollingPart::kNumKeys> RollingPart::kKeys{{
     {"rolling_friction", Range::NotNegative, "", "0",
      "largest rolling moment over the normal force and the reduced radius; `contact.rolling = "
      "\"spring\"`",
-     [](ContactConstants& p, double value) { p.mu_rolling = value; }, -1, false, true},
+     [](ContactConstants& p, double value) { p.mu_rolling = value; }, -1, false,
+     LawKey::Part::Rolling},
     {"rolling_stiffness_ratio", Range::Positive, "", "1",
      "stiffness of the rolling spring over the tangential one",
-     [](ContactConstants& p, double value) { p.kr_ratio = value; }, -1, false, true},
+     [](ContactConstants& p, double value) { p.kr_ratio = value; }, -1, false,
+     LawKey::Part::Rolling},
     {"rolling_stiffness", Range::Positive, "N/m", "none",
      "of the rolling spring, instead of `rolling_stiffness_ratio`",
-     [](ContactConstants& p, double value) { p.kr = value, p.kr_ratio = 0.0; }, 1, false, true},
+     [](ContactConstants& p, double value) { p.kr = value, p.kr_ratio = 0.0; }, 1, false,
+     LawKey::Part::Rolling},
     {"rolling_damping", Range::NotNegative, "N·s/m", "0", "dashpot beside the rolling spring",
-     [](ContactConstants& p, double value) { p.cr = value; }, -1, false, true},
+     [](ContactConstants& p, double value) { p.cr = value; }, -1, false, LawKey::Part::Rolling},
 }};
 
 bool RollingPart::mix(const ContactConstants& a, const ContactConstants& b,

@@ -45,15 +45,10 @@ struct WithRolling : Base {
 
   using Pair = ContactConstants;
   static constexpr int kNumKeys = Base::kNumKeys + RollingPart::kNumKeys;
-  static inline const std::array<LawKey, kNumKeys> kKeys = [] {
-    std::array<LawKey, kNumKeys> keys{};
-    for (int k = 0; k < kNumKeys; ++k)
-      keys[k] = k < Base::kNumKeys ? Base::kKeys[k] : RollingPart::kKeys[k - Base::kNumKeys];
-    for (int k = Base::kNumKeys; k < kNumKeys; ++k) {
-      if (keys[k].instead_of >= 0) keys[k].instead_of += Base::kNumKeys;
-    }
-    return keys;
-  }();
+  static const auto& keys() {
+    static const auto all = joined_keys(Base::keys(), RollingPart::kKeys);
+    return all;
+  }
   template <class P, class Visit>
   static void for_each_number(P& p, Visit&& visit) {
     Base::for_each_number(p, visit);

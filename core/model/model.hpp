@@ -45,9 +45,10 @@ struct ContactTable {
   /// Of an impact that the stable step allows for [m/s]; none: as fast as the start and falls make it.
   std::optional<double> reference_speed = std::nullopt;
 
-  bool twisting = false;  ///< read by contacts that roll
+  bool twisting = false;               ///< read by contacts that roll
+  Adhesion adhesion = Adhesion::None;  ///< read by contacts that stick
 
-  [[nodiscard]] ContactRules rules() const { return {no_tension, tangential, twisting}; }
+  [[nodiscard]] ContactRules rules() const { return {no_tension, tangential, twisting, adhesion}; }
 
   [[nodiscard]] const ContactConstants& at(int a, int b) const {
     return constants[static_cast<std::size_t>(a) * static_cast<std::size_t>(num_materials) +

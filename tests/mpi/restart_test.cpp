@@ -72,7 +72,8 @@ std::vector<Scenario> restart_scenarios() {
           hertz_gas(),
           rolling_shear_flow(),
           rolling_hertz_gas(),
-          rolling_column()};
+          rolling_column(),
+          sticky_gas(Adhesion::Sjkr2, true)};
 }
 
 class RestartOf : public testing::TestWithParam<int> {
@@ -125,7 +126,7 @@ TEST_P(RestartOf, GivesTheSameBitsOnAnyNumberOfRanksAndThreads) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenarios, RestartOf, testing::Range(0, 19));
+INSTANTIATE_TEST_SUITE_P(Scenarios, RestartOf, testing::Range(0, 20));
 
 /// Restarts from every step of a stretch, so from before, at and after rebuilds, with and without
 /// checks in flight.

@@ -317,6 +317,18 @@ inline Scenario rolling_hertz_gas() {
   return s;
 }
 
+/// @param adhesion  strong enough that some that meet stay together
+inline Scenario sticky_gas(Adhesion adhesion, bool rolls) {
+  Scenario s = hertz_gas();
+  s.name = rolls ? "3D gas that sticks and rolls, periodic" : "3D gas that sticks, periodic";
+  if (rolls) make_rolling(s);
+  s.model.contacts.law = rolls ? 5 : 4;
+  s.model.contacts.adhesion = adhesion;
+  for (ContactConstants& c : s.model.contacts.constants)
+    c.surface_energy = 40.0, c.cohesion_density = 4e4;
+  return s;
+}
+
 inline Scenario rolling_column() {
   Scenario s = column_collapse();
   s.name = "3D column collapse with rolling and twisting";

@@ -269,6 +269,11 @@ TEST(SameBits, SpheresThatResistToRollingAndTwisting) {
   (void)expect_same_bits(rolling_hertz_gas(), 9);
 }
 
+TEST(SameBits, SpheresThatStick) {
+  (void)expect_same_bits(sticky_gas(Adhesion::Dmt, true), 10);
+  (void)expect_same_bits(sticky_gas(Adhesion::Sjkr, false), 12);
+}
+
 TEST(SameBits, ElasticSpheresThatMeetAtCuts) {
   (void)expect_same_bits(hertz_gas(), 8);
 }

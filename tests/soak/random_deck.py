@@ -66,6 +66,7 @@ class RandomDeck:
             self.mass *= 4 / 3 * 0.6 * RADIUS
         self.is_hertz = self.dimension == 3 and rng.random() < 0.4
         self.rolls = rng.random() < 0.4
+        self.adhesion = rng.choice((None, None, "dmt", "sjkr", "sjkr2")) if self.is_hertz else None
         kind = rng.choice(("normal_damping", "normal_damping_rate", "restitution"))
         for name in self.materials:
             kn = 10 ** rng.uniform(4, 5.5)
@@ -81,7 +82,8 @@ class RandomDeck:
         self.table("[contact]", no_tension=rng.choice(("true", "false")),
                    model='"hertz"' if self.is_hertz else None,
                    tangential=rng.choice((None, '"mindlin-displacement"')) if self.is_hertz else None,
-                   rolling='"spring"' if self.rolls else None)
+                   rolling='"spring"' if self.rolls else None,
+                   adhesion=f'"{self.adhesion}"' if self.adhesion else None)
 
     def linear(self, kn, kind):
         rng = self.rng
@@ -96,7 +98,9 @@ class RandomDeck:
         """As stiff as kn where spheres overlap by a twentieth of a radius."""
         rng = self.rng
         return {"young_modulus": 5.5 * kn / RADIUS, "poisson_ratio": rng.choice((-0.2, 0.0, 0.3, 0.5)),
-                "restitution": rng.uniform(0.3, 1.0), "tangential_damping_ratio": rng.choice((None, 0.2))}
+                "restitution": rng.uniform(0.3, 1.0), "tangential_damping_ratio": rng.choice((None, 0.2)),
+                "surface_energy": 2e-6 * kn if self.adhesion == "dmt" else None,
+                "cohesion_density": 0.1 * kn if self.adhesion in ("sjkr", "sjkr2") else None}
 
     def draw_bonds(self):
         rng = self.rng

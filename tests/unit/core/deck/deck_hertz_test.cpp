@@ -107,6 +107,20 @@ TEST(HertzDeck, ReadsTheRulesOfContacts) {
   EXPECT_EQ(contacts.reference_speed, 3.0);
 }
 
+TEST(HertzDeck, MixesAdhesion) {
+  const ContactTable contacts =
+      parse({{"model = \"hertz\"", "model = \"hertz\"\nadhesion = \"dmt\"\nrolling = \"spring\""},
+             {"friction = 0.4", "friction = 0.4\nsurface_energy = 0.09\nrolling_friction = 0.1"},
+             {"friction = 0.6", "friction = 0.6\nsurface_energy = 0.04\nrolling_friction = 0.1"}})
+          .model.contacts;
+
+  EXPECT_EQ(contacts.adhesion, Adhesion::Dmt);
+  EXPECT_NEAR(contacts.at(0, 1).surface_energy, 0.06, 1e-15);
+  EXPECT_EQ(contacts.at(0, 0).surface_energy, 0.09);
+  EXPECT_EQ(contacts.at(0, 2).surface_energy, 0.0);
+  EXPECT_EQ(contacts.at(0, 1).mu_rolling, 0.1);
+}
+
 TEST(HertzDeck, ReadsRollingAndTwisting) {
   const ContactTable contacts =
       parse({{"model = \"hertz\"",
@@ -236,13 +250,13 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"RollingWithoutASpring",
               "friction = 0.4",
               "friction = 0.4\nrolling_friction = 0.1",
-              {":17:20:", "'rolling_friction' has no place where contact.rolling = \"none\"",
-               "rolling = \"spring\""}},
+              {":17:20:", "'rolling_friction' has no place without contact.rolling = \"spring\"",
+               "write rolling = \"spring\""}},
         Wrong{"RollingOfTwistingAlone",
               "model = \"hertz\"",
               "model = \"hertz\"\ntwisting = \"marshall\"\n[[pair]]\n"
               "materials = [\"glass\", \"sand\"]\nrolling_damping = 0.1",
-              {":13:19:", "'rolling_damping' has no place where contact.rolling = \"none\""}},
+              {":13:19:", "'rolling_damping' has no place without contact.rolling = \"spring\""}},
         Wrong{"RollingOfNobody",
               "model = \"hertz\"",
               "model = \"hertz\"\nrolling = \"spring\"",
@@ -253,6 +267,29 @@ INSTANTIATE_TEST_SUITE_P(
               "materials = [\"glass\", \"sand\"]\nrolling_stiffness = 1e3\n"
               "rolling_stiffness_ratio = 1.0",
               {"both rolling_stiffness_ratio and rolling_stiffness"}},
+        Wrong{"SurfaceEnergyWithoutAdhesion",
+              "friction = 0.4",
+              "friction = 0.4\nsurface_energy = 0.05",
+              {":17:18:", "'surface_energy' has no place without contact.adhesion = \"dmt\"",
+               "write adhesion = \"dmt\" in [contact]"}},
+        Wrong{
+            "CohesionUnderDmt",
+            "model = \"hertz\"",
+            "model = \"hertz\"\nadhesion = \"dmt\"\n[[pair]]\n"
+            "materials = [\"glass\", \"sand\"]\ncohesion_density = 1e4",
+            {":13:20:", "'cohesion_density' has no place without contact.adhesion = \"sjkr\" or"}},
+        Wrong{"DmtOfNobody",
+              "model = \"hertz\"",
+              "model = \"hertz\"\nadhesion = \"dmt\"",
+              {":10:12:", "no pair of materials has surface_energy"}},
+        Wrong{"SjkrOfNobody",
+              "model = \"hertz\"",
+              "model = \"hertz\"\nadhesion = \"sjkr2\"",
+              {":10:12:", "no pair of materials has cohesion_density"}},
+        Wrong{"AdhesionOfLinearContacts",
+              "model = \"hertz\"",
+              "model = \"linear\"\nadhesion = \"sjkr\"",
+              {":10:12:", "linear contacts do not stick", "model = \"hertz\""}},
         Wrong{"UnmixedPair",
               "model = \"hertz\"",
               "model = \"hertz\"\nmixing = \"none\"",

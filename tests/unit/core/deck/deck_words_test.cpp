@@ -37,21 +37,21 @@ TEST(NotModelled, IsCalledThatInsteadOfAMisspeltKey) {
   struct Case {
     std::string key, physics;
   };
-  const std::vector<Case> cases{{"twisting_friction", "twisting by constants of its own is"},
-                                {"torsion_stiffness", "twisting by constants of its own is"},
-                                {"cohesion", "cohesion is"},
-                                {"cohesionEnergyDensity", "cohesion is"},
-                                {"surface_energy", "cohesion is"},
-                                {"shear_modulus", "elasticity by any moduli but"},
-                                {"contact_law", "any law of contact but"},
-                                {"temperature", "heat is"},
-                                {"thermal_conductivity", "heat is"},
-                                {"viscosity", "viscosity is"},
-                                {"drag_coefficient", "a fluid is"},
-                                {"yield_stress", "plastic deformation, wear and breakage"},
-                                {"static_friction", "friction that depends on speed is"},
-                                {"charge", "electric and magnetic forces are"},
-                                {"shape", "any particle but disks and spheres is"}};
+  const std::vector<Case> cases{
+      {"twisting_friction", "twisting by constants of its own is"},
+      {"torsion_stiffness", "twisting by constants of its own is"},
+      {"surface_tension", "adhesion beyond touch (JKR, liquid bridges) is"},
+      {"liquidVolume", "adhesion beyond touch (JKR, liquid bridges) is"},
+      {"shear_modulus", "elasticity by any moduli but"},
+      {"contact_law", "any law of contact but"},
+      {"temperature", "heat is"},
+      {"thermal_conductivity", "heat is"},
+      {"viscosity", "viscosity is"},
+      {"drag_coefficient", "a fluid is"},
+      {"yield_stress", "plastic deformation, wear and breakage"},
+      {"static_friction", "friction that depends on speed is"},
+      {"charge", "electric and magnetic forces are"},
+      {"shape", "any particle but disks and spheres is"}};
   for (const Case& c : cases) {
     const std::string message = error_of({{"friction = 0.5", c.key + " = 0.5"}});
     expect_parts(message, {"test.toml:13:1: " + c.key + " in [[material]]: " + c.physics,
