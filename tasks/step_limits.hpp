@@ -47,8 +47,8 @@ class Limits {
   std::map<std::string, double> steps_;
 };
 
-/// Adds, for every particle with bonds, the limits of all of them together, under the name of each of
-/// its laws.
+/// Adds, for every particle with bonds, the limits of all of them together, under the name of each
+/// of its laws.
 void add_bonds(const Model& model, const ParticleSet& set, Limits& limits);
 
 }  // namespace barchan

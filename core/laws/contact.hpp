@@ -27,8 +27,8 @@ struct PairState<S, 3> {
   Real ux, uy, uz, inverse_radius;
 };
 
-/// The same for laws that feel how the two turn against each other. Angular velocities [rad/s], second
-/// minus first.
+/// The same for laws that feel how the two turn against each other. Angular velocities [rad/s],
+/// second minus first.
 template <class S, int Dim>
 struct TurningPair;
 

@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <barchan/core/laws/mixing.hpp>
+
 namespace barchan {
 namespace {
 
@@ -13,10 +15,6 @@ using Pair = HertzAdhesive::Pair;
 using Range = LawKey::Range;
 
 constexpr double kPi = std::numbers::pi;
-
-double geometric_mean(double a, double b) {
-  return a == b ? a : std::sqrt(a) * std::sqrt(b);
-}
 
 /// ∫ of the lens' (radius)² over the overlap, from touch to a distance d [m³].
 double lens_integral(double reach, double radius, double d) {

@@ -16,8 +16,8 @@ namespace barchan {
 ///   sjkr2   F = kappa·4·pi·R·overlap          friction by Hertz's part alone
 ///
 /// F acts from touch to touch: it vanishes at once where the two part. The clamp holds spring and
-/// dashpot, not F. Sources: Derjaguin, Muller & Toporov 1975, doi:10.1016/0021-9797(75)90018-1, friction
-/// as by Marshall 2009, doi:10.1016/j.jcp.2008.10.020; sjkr and sjkr2: LIGGGHTS.
+/// dashpot, not F. Sources: Derjaguin, Muller & Toporov 1975, doi:10.1016/0021-9797(75)90018-1,
+/// friction as by Marshall 2009, doi:10.1016/j.jcp.2008.10.020; sjkr and sjkr2: LIGGGHTS.
 struct HertzAdhesive : HertzMindlin {
   static constexpr bool kSticks = true;
 

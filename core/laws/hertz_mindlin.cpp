@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <barchan/core/laws/mixing.hpp>
 #include <barchan/core/laws/restitution.hpp>
 
 namespace barchan {
@@ -23,10 +24,6 @@ double normal_compliance(const Pair& m) {
 double shear_compliance(const Pair& m) {
   const double nu = m.poisson_ratio.value_or(0.0);
   return m.is_rigid ? 0.0 : (2.0 - nu) * 2.0 * (1.0 + nu) / m.young_modulus;
-}
-
-double geometric_mean(double a, double b) {
-  return std::sqrt(a) * std::sqrt(b);
 }
 
 /// 4/3·E*·a at an overlap [N/m]: the force over the overlap.
@@ -76,11 +73,8 @@ std::optional<Pair> HertzMindlin::mix(const Pair& a, const Pair& b) {
   }
   p.mu = std::min(a.mu, b.mu);
   if (a.restitution && b.restitution)
-    p.restitution = a.restitution == b.restitution ? *a.restitution
-                                                   : geometric_mean(*a.restitution, *b.restitution);
-  p.tangential_ratio = a.tangential_ratio == b.tangential_ratio
-                           ? a.tangential_ratio
-                           : geometric_mean(a.tangential_ratio, b.tangential_ratio);
+    p.restitution = geometric_mean(*a.restitution, *b.restitution);
+  p.tangential_ratio = geometric_mean(a.tangential_ratio, b.tangential_ratio);
   p.is_mixed = true;
   return p;
 }

@@ -23,9 +23,9 @@ namespace barchan {
 /// With growth = 1 the force of the spring goes down with the area of a contact that unloads, and
 /// does not come back with it (mindlin); with growth = +inf it is 8·G*·a times the displacement
 /// (mindlin-displacement). A wall is flat: 1/r = 0.
-/// Sources: Hertz 1882, doi:10.1515/crll.1882.92.156; Mindlin 1949, doi:10.1115/1.4009973; Thornton,
-/// Cummins & Cleary 2013, doi:10.1016/j.powtec.2012.08.012 (growth); Tsuji, Tanaka & Ishida 1992,
-/// doi:10.1016/0032-5910(92)88030-L (c).
+/// Sources: Hertz 1882, doi:10.1515/crll.1882.92.156; Mindlin 1949, doi:10.1115/1.4009973;
+/// Thornton, Cummins & Cleary 2013, doi:10.1016/j.powtec.2012.08.012 (growth); Tsuji, Tanaka &
+/// Ishida 1992, doi:10.1016/0032-5910(92)88030-L (c).
 struct HertzMindlin {
   static constexpr const char* kName = "hertz";
   /// Disks of unit thickness have no Hertz law.
@@ -122,7 +122,8 @@ struct HertzMindlin {
   template <class S, int Dim>
   using State = PairState<S, Dim>;
 
-  /// Stored in a contact [J]; in one that slid or turned, what its tangential force would give back.
+  /// Stored in a contact [J]; in one that slid or turned, what its tangential force would give
+  /// back.
   static double energy(const double* row, const History& history, const Overlap& overlap,
                        const double* numbers);
 

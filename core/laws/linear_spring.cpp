@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <barchan/core/laws/mixing.hpp>
 #include <barchan/core/laws/restitution.hpp>
 
 namespace barchan {
@@ -15,17 +16,12 @@ namespace {
 using Pair = LinearSpring::Pair;
 using Range = LawKey::Range;
 
-/// Two springs, or dashpots, in series, each of which gives `a` with its like.
-double in_series(double a, double b) {
-  return a > 0.0 && b > 0.0 ? 2.0 / (1.0 / a + 1.0 / b) : 0.0;
-}
-
 bool is_zero(const Dashpot& dashpot) {
   return dashpot.constant == 0.0 && dashpot.rate == 0.0 && dashpot.critical == 0.0;
 }
 
 /// None when both damp, but in ways that do not add up.
-std::optional<Dashpot> in_series(const Dashpot& a, const Dashpot& b) {
+std::optional<Dashpot> dashpots_in_series(const Dashpot& a, const Dashpot& b) {
   const Dashpot mixed{in_series(a.constant, b.constant), in_series(a.rate, b.rate),
                       in_series(a.critical, b.critical)};
   if (is_zero(mixed) && !is_zero(a) && !is_zero(b)) return std::nullopt;
@@ -71,8 +67,8 @@ std::optional<KeyGap> LinearSpring::find_gap(const Pair& material) {
 }
 
 std::optional<Pair> LinearSpring::mix(const Pair& a, const Pair& b) {
-  const auto cn = in_series(a.cn, b.cn);
-  const auto ct = in_series(a.ct, b.ct);
+  const auto cn = dashpots_in_series(a.cn, b.cn);
+  const auto ct = dashpots_in_series(a.ct, b.ct);
   const bool of_two_kinds = (a.restitution && !is_zero(b.cn)) || (b.restitution && !is_zero(a.cn));
   if (!cn || !ct || of_two_kinds) return std::nullopt;
   Pair mixed;

@@ -5,18 +5,12 @@
 
 #include <fmt/format.h>
 
+#include <barchan/core/laws/mixing.hpp>
+
 namespace barchan {
 namespace {
 
 using Range = LawKey::Range;
-
-double geometric_mean(double a, double b) {
-  return a == b ? a : std::sqrt(a) * std::sqrt(b);
-}
-
-double in_series(double a, double b) {
-  return a > 0.0 && b > 0.0 ? 2.0 / (1.0 / a + 1.0 / b) : 0.0;
-}
 
 }  // namespace
 

@@ -23,8 +23,8 @@ struct RollingPart {
   static std::string text(const ContactConstants& p);
 };
 
-/// A law of contact whose ends resist to rolling over each other too and, in 3D, to twisting. What is
-/// not said here is as in the base.
+/// A law of contact whose ends resist to rolling over each other too and, in 3D, to twisting. What
+/// is not said here is as in the base.
 /// With w = omega_j − omega_i, 1/R = 1/r_i + 1/r_j and, of the base, fn, kt and ct:
 ///
 ///   x' = x + R·w×n·dt                  rolling spring, zero at first touch; in the plane across n
@@ -35,8 +35,8 @@ struct RollingPart {
 ///   Q  = a²/2·(kt·y' + ct·w·n)·n,  |Q| <= 2/3·a·mu·|fn|        on i, −Q on j
 ///
 /// Sources: Iwashita & Oda 1998, doi:10.1061/(ASCE)0733-9399(1998)124:3(285), and Luding 2008,
-/// doi:10.1007/s10035-008-0099-x (rolling; with kr = kt and cr = 0 it is EPSD2 of LIGGGHTS, else SDS of
-/// LAMMPS); Marshall 2009, doi:10.1016/j.jcp.2008.10.020 (twisting).
+/// doi:10.1007/s10035-008-0099-x (rolling; with kr = kt and cr = 0 it is EPSD2 of LIGGGHTS, else
+/// SDS of LAMMPS); Marshall 2009, doi:10.1016/j.jcp.2008.10.020 (twisting).
 template <class Base>
 struct WithRolling : Base {
   static constexpr bool kRolls = true;

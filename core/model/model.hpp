@@ -42,7 +42,8 @@ struct ContactTable {
   bool no_tension = true;  ///< clamp the normal force at zero while particles part
   int law = 0;             ///< place in the list of laws
   Tangential tangential = Tangential::Mindlin;  ///< read by Hertz contacts
-  /// Of an impact that the stable step allows for [m/s]; none: as fast as the start and falls make it.
+  /// Of an impact that the stable step allows for [m/s]; none: as fast as the start and falls make
+  /// it.
   std::optional<double> reference_speed = std::nullopt;
 
   bool twisting = false;               ///< read by contacts that roll

@@ -15,7 +15,7 @@ namespace barchan {
 ///
 ///   | owned 0 … n−1 | waste n, n+1 | left ghosts | right ghosts |
 ///
-/// The waste rows pad batches of pairs: they never touch, for their radius is 0. (They have 1/r = 1.)
+/// The waste rows pad batches of pairs: they never touch, for their radius is 0 (and their 1/r 1).
 template <int Dim>
 struct ParticleStore {
   using L = Layout<Dim>;
