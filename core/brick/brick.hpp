@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -62,8 +63,8 @@ struct Brick {
   double step_travel = 0.0;  ///< bound of how far owned rows moved [m]
   bool is_fast = false;      ///< a row moved farther than World::most_travel(), or is not finite
   bool has_quick = false;    ///< an owned row moved farther than World::quick_travel
-  Passage passage;  ///< two that passed each other in the step before the last one; of several the
-                    ///< first
+  /// Two that passed each other in the step before the last one; of several the first.
+  Passage passage;
 
   explicit Brick(World<Dim>& of) : world(&of) {}
   Band& band(Side side) { return bands[index_of(side)]; }
@@ -74,12 +75,13 @@ struct Brick {
     for (const Band& band : bands) n += band.exists ? band.across.size() : 0;
     return n;
   }
-  /// Of both, so that every bond and every pair across a cut counts once: on the cut's right.
+  /// The bond is whole and counts here. What lies across a cut is on both sides, and counts on its
+  /// right.
   [[nodiscard]] bool counts_bond(std::int32_t bond) const {
     return !bonds.is_broken(bond) &&
            std::max(bonds.end_a(bond), bonds.end_b(bond)) < store.ghost_begin(Side::Right);
   }
-  /// Calls f(list, block) for the pairs that count here, block by block.
+  /// Calls f(list, block) for all pairs that count here, block by block.
   template <class F>
   void for_each_counted(F&& f) const {
     for (const RowBlock& block : blocks) f(pairs, block);

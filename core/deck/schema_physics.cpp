@@ -27,10 +27,10 @@ constexpr KeySpec kPhysicsKeys[] = {
      "smaller area cannot bear; `mindlin-displacement` multiplies displacement by stiffness",
      "mindlin|mindlin-displacement"},
     {"[contact]", "rolling", T::Choice, "", "none",
-     "`spring`: contacts resist to rolling, by `rolling_friction` and the keys beside it",
+     "`spring`: contacts resist rolling, by `rolling_friction` and the keys beside it",
      "none|spring"},
     {"[contact]", "twisting", T::Choice, "", "none",
-     "`marshall`: contacts of spheres resist to twisting about their normal, by `friction`",
+     "`marshall`: contacts of spheres resist twisting about their normal, by `friction`",
      "none|marshall"},
     {"[contact]", "adhesion", T::Choice, "", "none",
      "of hertz contacts, while they touch: `dmt` pulls by `surface_energy`, `sjkr` and `sjkr2` by "

@@ -23,8 +23,8 @@ struct RollingPart {
   static std::string text(const ContactConstants& p);
 };
 
-/// A law of contact whose ends resist to rolling over each other too and, in 3D, to twisting. What
-/// is not said here is as in the base.
+/// A law of contact that also resists rolling and, in 3D, twisting. What is not said here is as in
+/// the base.
 /// With w = omega_j − omega_i, 1/R = 1/r_i + 1/r_j and, of the base, fn, kt and ct:
 ///
 ///   x' = x + R·w×n·dt                  rolling spring, zero at first touch; in the plane across n
@@ -266,7 +266,7 @@ struct WithRolling : Base {
   [[gnu::always_inline]] static inline typename S::Real inverse_or_zero(typename S::Real k) {
     return S::select(S::less(S::set(0.0), k), S::set(1.0) / k, S::set(0.0));
   }
-  /// Of pairs that resist to rolling.
+  /// Of pairs that resist rolling.
   template <class S>
   [[gnu::always_inline]] static inline typename S::Real keep(typename S::Mask touching,
                                                              const Constants<S>& c,

@@ -296,7 +296,7 @@ inline Scenario hertz_gas() {
   return s;
 }
 
-/// Makes the contacts of a scenario resist to rolling and, in 3D, to twisting.
+/// Makes the contacts of a scenario resist rolling and, in 3D, twisting.
 inline void make_rolling(Scenario& s) {
   s.model.contacts.law += 2;
   s.model.contacts.twisting = s.model.dimension == 3;
@@ -305,7 +305,7 @@ inline void make_rolling(Scenario& s) {
 
 inline Scenario rolling_shear_flow() {
   Scenario s = shear_flow();
-  s.name = "dense shear of disks that resist to rolling";
+  s.name = "dense shear of disks that resist rolling";
   make_rolling(s);
   return s;
 }

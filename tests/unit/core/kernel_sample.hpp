@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -153,6 +154,27 @@ PeriodicBox box_of(bool periodic) {
   PeriodicBox box;
   for (int a = 0; periodic && a < Dim; a += 2) box.length[a] = 1.6, box.inverse[a] = 1.0 / 1.6;
   return box;
+}
+
+/// The force records of both ends after three steps of one pair.
+template <int Dim>
+std::array<std::vector<double>, 2> forces_of_ends(Sample<Dim>& s, const LawTable& laws,
+                                                  std::size_t pair) {
+  using L = Layout<Dim>;
+  const KernelSet kernels = make_kernels(Dim, VectorWidth::Scalar, laws, true, {});
+  PairJob job = s.job(laws, {});
+  job.begin = static_cast<std::int64_t>(pair);
+  job.end = job.begin + 1;
+  for (int n = 0; n < 3; ++n) {
+    s.start_forces();
+    kernels.pairs(job);
+  }
+  std::array<std::vector<double>, 2> forces;
+  for (std::size_t c = 0; c < L::kForce; ++c) {
+    forces[0].push_back(s.component(static_cast<std::size_t>(s.list.i[pair]) * L::kForce + c));
+    forces[1].push_back(s.component(static_cast<std::size_t>(s.list.j[pair]) * L::kForce + c));
+  }
+  return forces;
 }
 
 }  // namespace barchan::test

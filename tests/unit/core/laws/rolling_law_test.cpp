@@ -75,28 +75,6 @@ TEST(Rolling, GivesTheSameBitsAtAnyWidth) {
   }
 }
 
-/// The force records of both ends after three steps of one pair.
-template <int Dim>
-std::pair<std::vector<double>, std::vector<double>> forces_of_ends(Sample<Dim>& s,
-                                                                   const LawTable& laws,
-                                                                   std::size_t pair) {
-  using L = Layout<Dim>;
-  const KernelSet kernels = make_kernels(Dim, VectorWidth::Scalar, laws, true, {});
-  PairJob job = s.job(laws, {});
-  job.begin = static_cast<std::int64_t>(pair);
-  job.end = job.begin + 1;
-  for (int n = 0; n < 3; ++n) {
-    s.start_forces();
-    kernels.pairs(job);
-  }
-  std::pair<std::vector<double>, std::vector<double>> forces;
-  for (std::size_t c = 0; c < L::kForce; ++c) {
-    forces.first.push_back(s.component(static_cast<std::size_t>(s.list.i[pair]) * L::kForce + c));
-    forces.second.push_back(s.component(static_cast<std::size_t>(s.list.j[pair]) * L::kForce + c));
-  }
-  return forces;
-}
-
 template <int Dim>
 void expect_mirrored(int law) {
   const LawTable laws = rolling_laws(law, 2, Dim == 3);
@@ -107,15 +85,15 @@ void expect_mirrored(int law) {
   for (std::size_t k = 0; k < 400; ++k) {
     const auto one_way = forces_of_ends(there, laws, k), other_way = forces_of_ends(back, laws, k);
 
-    ASSERT_EQ(one_way.first, other_way.second);
-    ASSERT_EQ(one_way.second, other_way.first);
+    ASSERT_EQ(one_way[0], other_way[1]);
+    ASSERT_EQ(one_way[1], other_way[0]);
     const auto at = static_cast<std::int64_t>(k);
     for (int c = 0; c < form.length; ++c) {
       ASSERT_EQ(there.list.history_of(at)[c * kBatch],
                 form.sign(c, true) * back.list.history_of(at)[c * kBatch]);
     }
-    num_touching += one_way.first[0] != 0.0 ? 1 : 0;
-    num_apart += one_way.first[Layout<Dim>::kTorque] != one_way.second[Layout<Dim>::kTorque];
+    num_touching += one_way[0][0] != 0.0 ? 1 : 0;
+    num_apart += one_way[0][Layout<Dim>::kTorque] != one_way[1][Layout<Dim>::kTorque];
   }
   EXPECT_GT(num_touching, 20);
   EXPECT_GT(num_apart, num_touching / 3) << "the torques of the ends should differ";
