@@ -77,7 +77,7 @@ CheckpointKeeper::~CheckpointKeeper() {
 
 bool CheckpointKeeper::is_due(std::int64_t step) const {
   return spec_.every_steps > 0 && step % spec_.every_steps == 0 && step != first_step_ &&
-         step != last_begun_;
+         step != last_begun();
 }
 
 bool CheckpointKeeper::is_overdue() const {
@@ -94,6 +94,7 @@ CheckpointCopy& CheckpointKeeper::begin() {
 
 void CheckpointKeeper::start() {
   last_begun_ = copy_.step;
+  is_of_course_ = true;
   last_is_good_ = false;
   phase_ = Phase::Writing;
   run_in_background(&CheckpointKeeper::write_files);

@@ -50,6 +50,8 @@ class CheckpointKeeper {
 
   void demand() { is_demanded_ = true; }  ///< a checkpoint, as all ranks agreed
   [[nodiscard]] bool is_demanded() const { return is_demanded_; }
+  /// The run went back: what is on the disk of later steps may not be of this course.
+  void forget_course() { is_of_course_ = false; }
 
   /// Waits for the checkpoint before. @return the memory to copy the state to
   CheckpointCopy& begin();
@@ -61,7 +63,7 @@ class CheckpointKeeper {
   bool finish();
 
   /// Step, -1 before the first.
-  [[nodiscard]] std::int64_t last_begun() const { return last_begun_; }
+  [[nodiscard]] std::int64_t last_begun() const { return is_of_course_ ? last_begun_ : -1; }
   /// Where the newest complete checkpoint of this run is; rank 0; empty before the first.
   [[nodiscard]] const std::string& last_complete() const { return last_complete_; }
   [[nodiscard]] std::vector<std::string> take_warnings();
@@ -97,6 +99,7 @@ class CheckpointKeeper {
 
   bool is_demanded_ = false;
   std::int64_t last_begun_ = -1;
+  bool is_of_course_ = true;
   bool last_is_good_ = false;
   std::string last_complete_;
   std::vector<std::string> warnings_;

@@ -198,7 +198,13 @@ void Simulation::EngineOf<Dim>::update_lists() {
   }
   if (watch_.remove_outside(step_)) lists_.demand();
   if (!have_ended && !lists_.are_demanded(step_)) return;
+  renew_lists();
+}
+
+template <int Dim>
+void Simulation::EngineOf<Dim>::renew_lists() {
   lists_.renew(step_);
+  generation_.advance();
   growth_.look(parts_, step_, notes_);
 }
 

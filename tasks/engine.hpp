@@ -8,11 +8,13 @@
 #include <barchan/tasks/checkpoint_load.hpp>
 #include <barchan/tasks/growth_watch.hpp>
 #include <barchan/tasks/lists_keeper.hpp>
+#include <barchan/tasks/particle_index.hpp>
 #include <barchan/tasks/plates.hpp>
 #include <barchan/tasks/rebuild_schedule.hpp>
 #include <barchan/tasks/run_parts.hpp>
 #include <barchan/tasks/simulation.hpp>
 #include <barchan/tasks/stages.hpp>
+#include <barchan/tasks/state_data.hpp>
 #include <barchan/tasks/step_graph.hpp>
 #include <barchan/tasks/threads.hpp>
 #include <barchan/tasks/view.hpp>
@@ -23,7 +25,7 @@ namespace barchan {
 /// Simulation's inside, free of the dimension.
 class Simulation::Engine {
  public:
-  virtual ~Engine() = default;
+  virtual ~Engine() { generation_.end(); }
   virtual std::int64_t run(std::int64_t num_steps) = 0;
   virtual void for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const = 0;
   virtual void for_each_bond(const BondVisitor& visit) = 0;
@@ -40,6 +42,19 @@ class Simulation::Engine {
   [[nodiscard]] virtual double skin() const = 0;
   [[nodiscard]] virtual double force_grain() const = 0;
   virtual void save_checkpoint() = 0;
+  // What other solvers call between steps (library_calls.cpp).
+  virtual std::vector<ParticleView> owned() = 0;
+  virtual std::vector<LoadView> loads() = 0;
+  virtual void for_each_view(const std::function<void(const ParticleView&)>& visit) = 0;
+  virtual void set_loads(const Loads& loads) = 0;
+  virtual Gathered gather(ParticleField field) = 0;
+  virtual void scatter(ParticleField field, std::span<const std::int64_t> ids,
+                       std::span<const double> values) = 0;
+  virtual void set_gravity(const Vec3& gravity) = 0;
+  virtual void set_wall_velocity(std::size_t wall, const Vec3& velocity) = 0;
+  virtual void set_wall_load(std::size_t wall, double load) = 0;
+  virtual void save(std::unique_ptr<State::Data>& state) = 0;
+  virtual void load(const State::Data& state) = 0;
 
   /// Fills in how many threads there are. Collective.
   Engine(const Model& model, Communicator communicator, RunOptions options)
@@ -49,9 +64,10 @@ class Simulation::Engine {
   }
 
   friend class Simulation;
+  friend class WallControl;
 
  protected:
-  const Model model_;
+  Model model_;
   RunOptions options_;
   Communicator communicator_;
   std::int64_t step_ = 0;
@@ -66,6 +82,8 @@ class Simulation::Engine {
   std::unique_ptr<Trace> trace_;  ///< null: no trace
   std::unique_ptr<CheckpointKeeper> keeper_;
   Notes notes_;
+  Generation generation_;
+  ParticleIndex index_;
 };
 
 /// The time loop: what comes between two steps, and who does it. One step itself is StepGraph.
@@ -92,6 +110,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   }
   void clear_forces() override {
     for (Lane<Dim>& lane : parts_.strip.lanes()) lane.brick.store.external.clear();
+    generation_.advance();
   }
   Measures measure() override;
   std::uint64_t digest() override { return barchan::digest(parts_.strip); }
@@ -106,6 +125,18 @@ class Simulation::EngineOf final : public Simulation::Engine {
   [[nodiscard]] double skin() const override { return parts_.world.skin; }
   [[nodiscard]] double force_grain() const override { return parts_.world.grain.size; }
   void save_checkpoint() override;
+  std::vector<ParticleView> owned() override;
+  std::vector<LoadView> loads() override;
+  void for_each_view(const std::function<void(const ParticleView&)>& visit) override;
+  void set_loads(const Loads& loads) override;
+  Gathered gather(ParticleField field) override;
+  void scatter(ParticleField field, std::span<const std::int64_t> ids,
+               std::span<const double> values) override;
+  void set_gravity(const Vec3& gravity) override;
+  void set_wall_velocity(std::size_t wall, const Vec3& velocity) override;
+  void set_wall_load(std::size_t wall, double load) override;
+  void save(std::unique_ptr<State::Data>& state) override;
+  void load(const State::Data& state) override;
 
  private:
   EngineOf(const Model& model, Communicator communicator, const RunOptions& options,
@@ -119,6 +150,9 @@ class Simulation::EngineOf final : public Simulation::Engine {
   void begin_check();
   [[nodiscard]] int steps_in_a_go(std::int64_t most);
   [[nodiscard]] CheckpointState state();
+  void renew_lists();
+  [[nodiscard]] ParticleView view_of(Lane<Dim>& lane);
+  [[nodiscard]] const ParticleIndex& index();
 
   RunParts<Dim> parts_;
   StepGraph<Dim> graph_;

@@ -41,6 +41,12 @@ class ListsKeeper {
   void renew(std::int64_t step);
   /// Walls stand where they do as lists are made.
   void note_walls();
+  [[nodiscard]] const std::vector<Vec3>& walls_at_renewal() const { return walls_at_renewal_; }
+  /// Lists as they were: walls stood there, and nobody asks for new ones.
+  void recall(const std::vector<Vec3>& walls_at_renewal) {
+    walls_at_renewal_ = walls_at_renewal;
+    is_demanded_ = false;
+  }
 
   [[nodiscard]] double seconds() const { return seconds_; }  ///< of renewals
 

@@ -44,6 +44,8 @@ class Plates {
   void kick(std::span<WallState> states, int appears_in, std::span<WallSums> works);
   /// After that all walls move.
   void move(std::span<WallState> states) const;
+  void set_load(std::size_t wall, double load) { specs_[wall].load = load; }
+  [[nodiscard]] double load(std::size_t wall) const { return specs_[wall].load; }
   [[nodiscard]] double wait_seconds() const { return wait_seconds_; }  ///< for sums of forces
 
  private:

@@ -20,7 +20,8 @@ std::int64_t check_from(std::int64_t step) {
 
 RebuildSchedule::RebuildSchedule(const Communicator& communicator, double skin, double dt,
                                  double gravity, int look_every)
-    : reduction_(communicator, kMaxima, kSums),
+    : is_root_(communicator.is_root()),
+      reduction_(communicator, kMaxima, kSums),
       skin_(skin),
       dt_(dt),
       gravity_(gravity),
@@ -111,7 +112,7 @@ bool RebuildSchedule::must_rebuild(std::int64_t step) {
 void RebuildSchedule::rebuilt(std::int64_t step) {
   lists_step_ = step;
   lists_end_ = end_of_lists(step, 0.0, speed_, speed_step_);
-  if (check_step_ < step && check_step_ + kLag > step) {
+  if (check_step_ < step && check_step_ + kLag >= step) {
     is_check_over_ = true;
     return;
   }
@@ -139,6 +140,45 @@ void RebuildSchedule::restore(std::int64_t step, double speed, const PendingLook
   check_step_ = look.step;
   begin_check({0.0, speed, look.outside, look.overlap, num_particles, {}, 0.0}, {});
   is_check_over_ = true;
+}
+
+RebuildSchedule::Memory RebuildSchedule::memory(std::int64_t step) {
+  Memory m{skin_,      gravity_,    speed_,    speed_step_,    lists_step_,
+           lists_end_, check_step_, interval_, is_check_over_, std::nullopt};
+  if (check_step_ >= step) return m;
+  wait();
+  m.check = numbers();
+  return m;
+}
+
+void RebuildSchedule::recall(std::int64_t step, const Memory& m) {
+  if (check_step_ < step) wait();
+  skin_ = m.skin;
+  gravity_ = m.gravity;
+  speed_ = m.speed;
+  speed_step_ = m.speed_step;
+  lists_step_ = m.lists_step;
+  lists_end_ = m.lists_end;
+  check_step_ = m.check_step;
+  interval_ = m.interval;
+  answer_.reset();
+  stop_agreed_ = save_agreed_ = false;
+  if (m.check) {
+    CheckNumbers mine = *m.check;  // of all ranks: the largest of equals, and one rank's sums
+    if (!is_root_) mine.particles = 0, mine.imbalance = {};
+    begin_check(mine, {});
+  }
+  is_check_over_ = m.is_check_over;
+}
+
+void RebuildSchedule::amend(std::int64_t step, std::int64_t newcomers, double speed) {
+  Memory m = memory(step);
+  m.speed = std::max(m.speed, speed);
+  if (m.check) {
+    m.check->particles += newcomers;
+    m.check->speed = std::max(m.check->speed, speed);
+  }
+  recall(step, m);
 }
 
 }  // namespace barchan

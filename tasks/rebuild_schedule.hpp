@@ -98,6 +98,29 @@ class RebuildSchedule {
   void restore(std::int64_t step, double speed, const PendingLook& look,
                std::int64_t num_particles);
 
+  /// All that it knows between two steps; `check` where a check is on its way.
+  struct Memory {
+    double skin = 0.0, gravity = 0.0, speed = 0.0;
+    std::int64_t speed_step = 0, lists_step = 0, lists_end = 0, check_step = 0;
+    int interval = 0;
+    bool is_check_over = false;
+    std::optional<CheckNumbers> check;
+  };
+  /// Before `step`. Waits for a check on its way. Collective.
+  [[nodiscard]] Memory memory(std::int64_t step);
+  /// Before `step`, all is as it was then; wishes on their way are to be made again. Collective.
+  void recall(std::int64_t step, const Memory& memory);
+  /// Before `step`, a caller changed what no check on its way knows. Collective.
+  /// @param newcomers  of all ranks; below 0: particles that went
+  /// @param speed      that something may have now [m/s]
+  void amend(std::int64_t step, std::int64_t newcomers, double speed);
+  /// @return whether it is more than lists allow for, so that new ones must be made
+  bool raise_gravity(double gravity) {
+    const bool is_more = gravity > gravity_;
+    gravity_ = std::max(gravity_, gravity);
+    return is_more;
+  }
+
   /// The rule above, with d and v as of step `from`. @return the first step without lists
   [[nodiscard]] std::int64_t end_of_lists(std::int64_t from, double distance, double speed,
                                           std::int64_t speed_step) const;
@@ -116,6 +139,7 @@ class RebuildSchedule {
     return (step + look_every_ - 1) / look_every_ * look_every_;
   }
 
+  bool is_root_;
   Reduction reduction_;
   std::optional<CheckNumbers> answer_;
   double skin_, dt_, gravity_;

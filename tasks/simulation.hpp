@@ -16,7 +16,9 @@
 #include <barchan/core/links/walls.hpp>
 #include <barchan/core/model/model.hpp>
 #include <barchan/tasks/notes.hpp>
+#include <barchan/tasks/particle_view.hpp>
 #include <barchan/tasks/run_options.hpp>
+#include <barchan/tasks/state.hpp>
 
 namespace barchan {
 
@@ -27,6 +29,8 @@ struct OwnedParticle : ParticleData {
 };
 
 using BondVisitor = std::function<void(const BondData&, const Vec3& a, const Vec3& b)>;
+
+class Simulation;
 
 /// Times of one kind of communication on this rank [s].
 struct CommunicationTime {
@@ -46,6 +50,24 @@ struct Timings {
   double exposed_seconds = 0.0;
   std::int64_t rebuilds = 0, migrations = 0;
   ExchangeStats exchange;  ///< zero on one rank
+};
+
+/// A wall of a simulation, which lives longer and is not moved.
+class WallControl {
+ public:
+  [[nodiscard]] const WallState& state() const;  ///< force, torque and work of the last measure()
+  /// From the next step on [m/s]. Collective; the same on every rank.
+  /// Errors: InputError: the wall is moved by its load
+  void set_velocity(const Vec3& velocity);
+  /// Of a loaded plate, along its normal [N/m²]. Collective; the same on every rank.
+  /// Errors: InputError: the wall is not loaded
+  void set_load(double load);
+
+ private:
+  friend class Simulation;
+  WallControl(Simulation& simulation, std::size_t wall) : simulation_(&simulation), wall_(wall) {}
+  Simulation* simulation_;
+  std::size_t wall_;
 };
 
 /// A DEM simulation on all ranks of a communicator.
@@ -94,6 +116,8 @@ class Simulation {
   /// than 0 steps, from within run(), after the simulation was moved from. RunError once MPI has
   /// ended.
   std::int64_t run(std::int64_t num_steps);
+  /// Runs to the step nearest to `time` [s]; as run(). @return steps done
+  std::int64_t advance_to(double time);
   /// Ends the run() of this process that is under way, or else its next one, on all ranks and
   /// within a few steps; then the request is forgotten. Callable from a signal handler.
   static void request_stop() noexcept;
@@ -126,6 +150,41 @@ class Simulation {
   /// cleared.
   void apply_forces(const std::function<Vec3(const OwnedParticle&)>& force);
   void clear_forces();
+
+  // ---- for other solvers (docs/library.md); between steps
+  /// The particles of this rank, a view for each of its bricks, without a copy. Local.
+  [[nodiscard]] std::vector<ParticleView> owned();
+  /// Changes whenever views end: rows moved, or loads were cleared. Local.
+  [[nodiscard]] std::uint64_t generation() const;
+  /// Calls `visit` for the view of every brick, on as many threads as there are. Local.
+  void for_each_view(const std::function<void(const ParticleView&)>& visit);
+  /// Loads to write in place, brick by brick as owned(). Local.
+  [[nodiscard]] std::vector<LoadView> loads();
+  /// Sets loads on these particles of this rank; others keep theirs. They act in every step until
+  /// they are set again or cleared. In the order of owned() it is fastest. Local.
+  /// Errors: std::invalid_argument, and nothing is set: an id of another rank, lengths that do not
+  /// fit, a number that is not finite
+  void set_loads(const Loads& loads);
+  /// A field of all particles, on rank 0; empty elsewhere. Collective.
+  [[nodiscard]] Gathered gather(ParticleField field);
+  /// Sets velocities, angular velocities, forces or torques of any particles.
+  /// @param ids, values  the same on every rank; three numbers a particle. Collective.
+  /// Errors: InputError, the same on every rank, and nothing is set: an id that there is not, a
+  /// fixed particle that is to move, other lengths, a number that is not finite
+  void scatter(ParticleField field, std::span<const std::int64_t> ids,
+               std::span<const double> values);
+  /// From the next step on [m/s²]. Collective; the same on every rank.
+  void set_gravity(const Vec3& gravity);
+  /// The wall of this name: wall("lid").set_velocity(v). Errors: std::invalid_argument: none has it
+  [[nodiscard]] WallControl wall(const std::string& name);
+
+  /// The present state, in memory. Collective.
+  [[nodiscard]] State save();
+  void save(State& state);  ///< the same, in the memory of a former one. Collective.
+  /// All is as it was when `state` was saved, to the bit. Notes, timings, callbacks and files stay.
+  /// After an AgreedError, too. Collective. Errors: std::logic_error: an empty state, or one of
+  /// another simulation
+  void load(const State& state);
 
   /// Energies, contacts, largest overlap, momentum; over all ranks. Collective.
   [[nodiscard]] Measures measure();
@@ -166,6 +225,7 @@ class Simulation {
   [[nodiscard]] std::size_t memory_bytes() const;  ///< particles, lists, history of this rank
 
  private:
+  friend class WallControl;
   class Engine;
   template <int Dim>
   class EngineOf;

@@ -48,6 +48,8 @@ class StripRebuild {
   /// Collective; leaves ghosts up to date.
   void rebuild(const ForEachLane& parallel);
 
+  [[nodiscard]] const std::vector<int>& cuts() const { return cuts_; }  ///< of all lanes
+  void set_cuts(const std::vector<int>& cuts) { cuts_ = cuts; }  ///< with bricks that fit them
   [[nodiscard]] const RebuildWaits& waits() const { return waits_; }
   void restart_waits() { waits_ = {}; }  ///< setting up is not part of the loop
   [[nodiscard]] std::int64_t num_rebuilds() const { return num_rebuilds_; }

@@ -32,6 +32,17 @@ class Watch {
 
   /// Of a measurement; the next look takes it along.
   void see_overlap(double share) { overlap_ = std::max(overlap_, share); }
+  /// What looks to come depend on.
+  struct Memory {
+    double overlap = 0.0;
+    std::int64_t overlap_watched_at = 0;
+  };
+  [[nodiscard]] Memory memory() const { return {overlap_, overlap_watched_at_}; }
+  void recall(const Memory& memory) {
+    overlap_ = memory.overlap;
+    overlap_watched_at_ = memory.overlap_watched_at;
+    must_remove_ = false;
+  }
   /// What this rank brings to a look: who is outside, and overlaps now and then.
   void look(std::int64_t step, CheckNumbers& mine);
   /// What it brings to every check.

@@ -9,6 +9,16 @@
 
 namespace barchan {
 
+template <int Dim>
+[[nodiscard]] std::size_t bytes_of(const Brick<Dim>& brick) {
+  std::size_t total = brick.store.bytes() + brick.pairs.bytes() + brick.bonds.bytes() +
+                      brick.walls.bytes() + sizeof(std::int64_t) * brick.row_begin.capacity() +
+                      sizeof(std::int32_t) * brick.cells.start.capacity() +
+                      sizeof(RowBlock) * brick.blocks.capacity();
+  for (const Band& band : brick.bands) total += band.across.bytes() + band.planes.bytes();
+  return total;
+}
+
 /// A lane is to a thread what a strip is to a rank: a brick, and what works on it. All of it is
 /// single-threaded and touches this brick only.
 template <int Dim>
@@ -24,13 +34,7 @@ struct Lane {
   Lane& operator=(const Lane&) = delete;
 
   [[nodiscard]] std::size_t bytes() const {
-    std::size_t total = brick.store.bytes() + brick.pairs.bytes() + brick.bonds.bytes() +
-                        brick.walls.bytes() + lists.bytes() + rebuild.bytes() +
-                        sizeof(std::int64_t) * brick.row_begin.capacity() +
-                        sizeof(std::int32_t) * brick.cells.start.capacity() +
-                        sizeof(RowBlock) * brick.blocks.capacity();
-    for (const Band& band : brick.bands) total += band.across.bytes() + band.planes.bytes();
-    return total;
+    return bytes_of(brick) + lists.bytes() + rebuild.bytes();
   }
 };
 
