@@ -50,6 +50,8 @@ class Simulation::Engine {
   virtual Gathered gather(ParticleField field) = 0;
   virtual void scatter(ParticleField field, std::span<const std::int64_t> ids,
                        std::span<const double> values) = 0;
+  virtual void add(const ParticleSet& newcomers) = 0;
+  virtual void remove(std::span<const std::int64_t> ids) = 0;
   virtual void set_gravity(const Vec3& gravity) = 0;
   virtual void set_wall_velocity(std::size_t wall, const Vec3& velocity) = 0;
   virtual void set_wall_load(std::size_t wall, double load) = 0;
@@ -132,6 +134,8 @@ class Simulation::EngineOf final : public Simulation::Engine {
   Gathered gather(ParticleField field) override;
   void scatter(ParticleField field, std::span<const std::int64_t> ids,
                std::span<const double> values) override;
+  void add(const ParticleSet& newcomers) override;
+  void remove(std::span<const std::int64_t> ids) override;
   void set_gravity(const Vec3& gravity) override;
   void set_wall_velocity(std::size_t wall, const Vec3& velocity) override;
   void set_wall_load(std::size_t wall, double load) override;
@@ -153,6 +157,9 @@ class Simulation::EngineOf final : public Simulation::Engine {
   void renew_lists();
   [[nodiscard]] ParticleView view_of(Lane<Dim>& lane);
   [[nodiscard]] const ParticleIndex& index();
+  /// Of this rank, others have lane < 0. Collective. Errors: InputError for an id that there is not
+  [[nodiscard]] std::vector<ParticlePlace> find_all(std::span<const std::int64_t> ids,
+                                                    const char* call);
 
   RunParts<Dim> parts_;
   StepGraph<Dim> graph_;

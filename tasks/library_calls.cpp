@@ -226,27 +226,17 @@ Gathered Simulation::EngineOf<Dim>::gather(ParticleField field) {
 template <int Dim>
 void Simulation::EngineOf<Dim>::scatter(ParticleField field, std::span<const std::int64_t> ids,
                                         std::span<const double> values) {
-  const ParticleIndex& places = index();
   const bool is_motion =
       field == ParticleField::Velocity || field == ParticleField::AngularVelocity;
-  std::vector<ParticlePlace> found(ids.size());
-  std::vector<std::int64_t> is_known(ids.size(), 0);
+  const std::vector<ParticlePlace> found = find_all(ids, "scatter");
   agree(communicator_, [&] {
-    for (std::size_t k = 0; k < ids.size(); ++k) {
-      const auto at = found[k] = places.find(ids.subspan(k, 1)).first;
-      is_known[k] = at.lane < 0 ? 0 : 1;
-      if (is_motion && at.lane >= 0 &&
-          parts_.strip.lane(at.lane).brick.store.inverse_mass(at.row) == 0.0)
+    for (std::size_t k = 0; k < ids.size() && is_motion; ++k) {
+      const ParticlePlace at = found[k];
+      if (at.lane >= 0 && parts_.strip.lane(at.lane).brick.store.inverse_mass(at.row) == 0.0)
         throw InputError(fmt::format("Simulation::scatter: particle {} is fixed", ids[k]),
                          "leave it out");
     }
   });
-  communicator_.allreduce_sum(std::span<std::int64_t>(is_known));
-  for (std::size_t k = 0; k < ids.size(); ++k) {
-    if (is_known[k] == 0)
-      throw InputError(fmt::format("Simulation::scatter: there is no particle {}", ids[k]),
-                       "gather() says which there are");
-  }
   if (!is_motion) {
     for (Lane<Dim>& lane : parts_.strip.lanes()) make_room(lane.brick.store);
   }

@@ -173,6 +173,15 @@ class Simulation {
   /// fixed particle that is to move, other lengths, a number that is not finite
   void scatter(ParticleField field, std::span<const std::int64_t> ids,
                std::span<const double> values);
+  /// Particles that come now, with velocities half a step behind their positions, no larger than
+  /// the largest of the start. @param newcomers  the same on every rank. Collective.
+  /// Errors: InputError, the same on every rank, and nothing is added: an id that is taken, a place
+  /// where a particle or wall is, one for which the step is too long, or as check_particles finds
+  void add(std::span<const ParticleData> newcomers);
+  /// Particles that go now, with their contacts and bonds. @param ids  the same on every rank.
+  /// Collective. Errors: InputError, the same on every rank, and nothing is removed: an id that
+  /// there is not, or that is named twice
+  void remove(std::span<const std::int64_t> ids);
   /// From the next step on [m/s²]. Collective; the same on every rank.
   void set_gravity(const Vec3& gravity);
   /// The wall of this name: wall("lid").set_velocity(v). Errors: std::invalid_argument: none has it

@@ -1,13 +1,17 @@
 // What Simulation and WallControl ask of callers before the engine does what they want.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <initializer_list>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <barchan/core/base/error.hpp>
+#include <barchan/core/model/digest.hpp>
 #include <barchan/tasks/engine.hpp>
 
 namespace barchan {
@@ -42,17 +46,21 @@ void require_plane(const Model& model, const char* call, const Vec3& v) {
                      "give 0 in 2D");
 }
 
-std::string differing_lists(const Communicator& communicator, std::span<const std::int64_t> ids,
-                            std::span<const double> values) {
-  std::uint64_t hash = 1469598103934665603U;
-  const auto take = [&hash](std::span<const std::byte> bytes) {
-    for (const std::byte b : bytes) hash = (hash ^ static_cast<std::uint64_t>(b)) * 1099511628211U;
-  };
-  take(std::as_bytes(ids));
-  take(std::as_bytes(values));
-  std::uint64_t first = hash;
-  communicator.bcast(std::as_writable_bytes(std::span(&first, 1)));
-  return communicator.any_of(first != hash) ? "ranks give different lists" : "";
+/// @return what is wrong, on every rank; empty: nothing
+std::string differing_lists(const Communicator& communicator,
+                            std::initializer_list<std::uint64_t> hashes) {
+  bool differs = false;
+  for (const std::uint64_t mine : hashes) {
+    std::uint64_t first = mine;
+    communicator.bcast(std::as_writable_bytes(std::span(&first, 1)));
+    differs = differs || first != mine;
+  }
+  return communicator.any_of(differs) ? "ranks give different lists" : "";
+}
+
+template <class T>
+std::uint64_t hash_of(std::span<const T> values) {
+  return hash_of_bytes(std::as_bytes(values));
 }
 
 }  // namespace
@@ -102,7 +110,7 @@ Gathered Simulation::gather(ParticleField field) {
 void Simulation::scatter(ParticleField field, std::span<const std::int64_t> ids,
                          std::span<const double> values) {
   Engine& engine = between_steps("scatter");
-  std::string fault = differing_lists(engine.communicator_, ids, values);
+  std::string fault = differing_lists(engine.communicator_, {hash_of(ids), hash_of(values)});
   if (fault.empty() && values.size() != 3 * ids.size())
     fault = fmt::format("{} numbers for {} particles: three each", values.size(), ids.size());
   if (fault.empty() && !are_finite(values)) fault = "a number is not finite";
@@ -112,6 +120,26 @@ void Simulation::scatter(ParticleField field, std::span<const std::int64_t> ids,
     fault = "this field is not to be set: velocity, angular velocity, force and torque are";
   if (!fault.empty()) throw InputError("Simulation::scatter: " + fault, "");
   engine.scatter(field, ids, values);
+}
+
+void Simulation::add(std::span<const ParticleData> newcomers) {
+  Engine& engine = between_steps("add");
+  const ParticleSet set{{newcomers.begin(), newcomers.end()}, {}};
+  const std::string fault = differing_lists(engine.communicator_, {particle_set_hash(set)});
+  if (!fault.empty()) throw InputError("Simulation::add: " + fault, "");
+  if (!newcomers.empty()) engine.add(set);
+}
+
+void Simulation::remove(std::span<const std::int64_t> ids) {
+  Engine& engine = between_steps("remove");
+  std::string fault = differing_lists(engine.communicator_, {hash_of(ids)});
+  std::vector<std::int64_t> sorted(ids.begin(), ids.end());
+  std::sort(sorted.begin(), sorted.end());
+  const auto twin = std::adjacent_find(sorted.begin(), sorted.end());
+  if (fault.empty() && twin != sorted.end())
+    fault = fmt::format("particle {} is named twice", *twin);
+  if (!fault.empty()) throw InputError("Simulation::remove: " + fault, "");
+  if (!ids.empty()) engine.remove(sorted);
 }
 
 void Simulation::set_gravity(const Vec3& gravity) {

@@ -125,7 +125,11 @@ void StripRebuild<Dim>::migrate(const ForEachLane& parallel) {
         strip_.outer_lane(side).rebuild.absorb(strip_.exchange()->bulk(side));
     }
   }
-  parallel([this](int l) { strip_.lane(l).rebuild.order(); });
+  parallel([this](int l) {
+    strip_.lane(l).rebuild.take_in(newcomers_);
+    strip_.lane(l).rebuild.order();
+  });
+  newcomers_ = {};
 }
 
 template <int Dim>

@@ -45,6 +45,8 @@ class StripRebuild {
   /// @param shares  one for each lane of this rank: particles between its cuts, and all that has an
   /// end among them
   void restore(std::vector<int> cuts, std::span<const CheckpointShare> shares);
+  /// The next rebuild takes them in; the same on every rank, and they live until then.
+  void take_in(std::span<const ParticleData> newcomers) { newcomers_ = newcomers; }
   /// Collective; leaves ghosts up to date.
   void rebuild(const ForEachLane& parallel);
 
@@ -87,6 +89,7 @@ class StripRebuild {
   Reduction sizes_;                             ///< of halos to come
   std::vector<std::array<Bytes, 2>> outboxes_;  ///< by lane and side
   std::vector<int> cuts_;                       ///< of all lanes
+  std::span<const ParticleData> newcomers_;
   RebuildWaits waits_;
   std::int64_t bulk_begin_ = 0;
   std::int64_t num_rebuilds_ = 0, num_migrations_ = 0;

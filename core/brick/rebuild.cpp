@@ -174,6 +174,24 @@ void Rebuild<Dim>::absorb(std::span<const std::byte> message) {
   for (const auto& b : in.bonds) brick_.bonds.add(b.bond, b.is_current != 0);
 }
 
+template <int Dim>
+void Rebuild<Dim>::take_in(std::span<const ParticleData> newcomers) {
+  ParticleStore<Dim>& store = brick_.store;
+  const Grid<Dim>& grid = brick_.world->grid;
+  for (const ParticleData& p : newcomers) {
+    double x[3] = {p.position[0], p.position[1], p.position[2]};
+    grid.wrap(x);
+    const int slab = grid.coordinate(x, 0);
+    if (slab < brick_.slab_begin || slab >= brick_.slab_end) continue;
+    const auto row = static_cast<std::int32_t>(leavers_.way.size());
+    store.resize_rows(static_cast<std::size_t>(std::max(row + 3, store.size())));
+    leavers_.way.push_back(Leavers::Stays);
+    set_particle(store, row, p, false);
+    grid.wrap(store.x(row));
+    store.key[static_cast<std::size_t>(row)] = grid.key(store.x(row));
+  }
+}
+
 /// Counting sort by cell; within a cell any order will do. @return of every row where it comes
 /// from, then those that have left
 template <int Dim>

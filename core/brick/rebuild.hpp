@@ -39,7 +39,9 @@ class Rebuild {
   void begin(int slab_begin, int slab_end, std::vector<std::byte>& to_left,
              std::vector<std::byte>& to_right);
   void absorb(std::span<const std::byte> message);  ///< arrivals. Errors: RunError: damaged
-  void order();                                     ///< by cells
+  /// Those of a caller that lie in the slabs; between begin and order.
+  void take_in(std::span<const ParticleData> newcomers);
+  void order();  ///< by cells
   void pack_ghosts(Side side, std::vector<std::byte>& message) const;
   /// Lists pairs with them, too. Errors: RunError: damaged
   void take_ghosts(std::span<const std::byte> left, std::span<const std::byte> right);
