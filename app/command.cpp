@@ -22,6 +22,9 @@ int say(const CommandLine& line) {
 void run_local(const CommandLine& line) {
   if (line.kind == CommandKind::Check) return check_deck(line.check);
   if (line.kind == CommandKind::Info) return show_info(line.info_path);
+  if (line.kind == CommandKind::Sweep) return sweep(line.sweep);
+  if (line.kind == CommandKind::Table) return print_runs(line.table);
+  if (line.kind == CommandKind::Compare) return compare(line.compare);
   convert(line.convert);
 }
 

@@ -1,14 +1,13 @@
 #include <barchan/app/command_line.hpp>
 
-#include <charconv>
-#include <cmath>
-#include <memory>
+#include <map>
 #include <sstream>
 
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 
+#include <barchan/app/options.hpp>
 #include <barchan/core/base/nearest.hpp>
 #include <barchan/tasks/results/run_summary.hpp>
 #include <barchan/tasks/simulation.hpp>
@@ -24,61 +23,10 @@ constexpr const char* kFoot =
     "input.\n"
     "barchan COMMAND --help lists the options of a command.";
 
-std::string listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
-}
-
-/// One of some words, else the nearest of them is named.
-CLI::Validator one_of(const std::vector<std::string>& words) {
-  return CLI::Validator(
-      [words](std::string& word) -> std::string {
-        const std::vector<std::string_view> views(words.begin(), words.end());
-        for (const auto& known : views) {
-          if (known == word) return {};
-        }
-        return fmt::format("there is no '{}' ({})", word, deck::suggest(word, views));
-      },
-      "{" + listed(words) + "}");
-}
-
-/// An empty argument is often a variable of a script that was never set: what an option is for must
-/// not be left to its default then.
-CLI::Validator not_empty() {
-  return CLI::Validator(
-      [](std::string& word) -> std::string { return word.empty() ? "is empty" : ""; }, "");
-}
-
-/// Turns 1e3 into 1000, and refuses what is no whole number in these words.
-CLI::Validator whole_number() {
-  return CLI::Validator(
-      [](std::string& word) -> std::string {
-        double value = 0.0;
-        const char* end = word.data() + word.size();
-        const auto read = std::from_chars(word.data(), end, value);
-        if (read.ec != std::errc() || read.ptr != end || value != std::floor(value))
-          return "'" + word + "' is not a whole number";
-        if (std::abs(value) > 0x1p53) return word + " is too large";
-        word = fmt::format("{:.0f}", value);
-        return {};
-      },
-      "");
-}
-
 /// `replay` records a run first, so that it is no exchange of its own.
 std::vector<std::string> with_replay(std::vector<std::string> names) {
   names.emplace_back("replay");
   return names;
-}
-
-void add_settings(CLI::App& command, std::vector<std::string>& settings) {
-  command
-      .add_option("--set", settings,
-                  "Change the deck, such as time.step=1e-4 or material.soil.friction=0.4")
-      ->type_name("KEY=VALUE")
-      ->take_all()
-      ->allow_extra_args(false);
 }
 
 struct Words {
@@ -251,11 +199,12 @@ std::string explain(const CLI::App& root, const CLI::ParseError& error, int argc
 }
 
 CommandKind kind_of(const CLI::App& root) {
-  if (root.got_subcommand("run")) return CommandKind::Run;
-  if (root.got_subcommand("check")) return CommandKind::Check;
-  if (root.got_subcommand("info")) return CommandKind::Info;
-  if (root.got_subcommand("probe")) return CommandKind::Probe;
-  return CommandKind::Convert;
+  static const std::map<std::string, CommandKind> kKinds{
+      {"run", CommandKind::Run},         {"check", CommandKind::Check},
+      {"info", CommandKind::Info},       {"probe", CommandKind::Probe},
+      {"convert", CommandKind::Convert}, {"sweep", CommandKind::Sweep},
+      {"table", CommandKind::Table},     {"compare", CommandKind::Compare}};
+  return kKinds.at(root.get_subcommands().front()->get_name());
 }
 
 }  // namespace
@@ -271,6 +220,7 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   add_run(root, line.run, words);
   add_probe(root, line.probe);
   add_others(root, line);
+  add_experiments(root, line);
   for (CLI::App* command : root.get_subcommands({}))
     command->set_version_flag("--version", "barchan " + version());
   try {

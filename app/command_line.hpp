@@ -13,7 +13,7 @@ inline constexpr int kDone = 0;
 inline constexpr int kFailed = 1;
 inline constexpr int kWrongInput = 2;
 
-enum class CommandKind { Text, Run, Check, Info, Probe, Convert };
+enum class CommandKind { Text, Run, Check, Info, Probe, Convert, Sweep, Table, Compare };
 
 struct RunArguments {
   std::string deck;
@@ -46,6 +46,35 @@ struct ConvertArguments {
   bool force = false;
 };
 
+struct SweepArguments {
+  std::string deck, out;
+  std::vector<int> ranks;  ///< empty: 2, or as many as the lab has hosts
+  std::vector<int> threads{1};
+  std::vector<std::string> exchanges{"auto"}, schedules{"overlap"}, progress{"poll"};
+  std::vector<std::string> vary;      ///< KEY=VALUE,VALUE,...
+  std::vector<std::string> settings;  ///< key=value, of all runs
+  std::vector<std::string> commands;  ///< paths of barchan; empty: this one
+  std::optional<std::int64_t> steps;
+  int repeat = 3;
+  std::string launcher, lab;
+  double minutes = 0.0;  ///< 0: no limit
+  bool keep = false, trace = false, force = false, quiet = false;
+};
+
+enum class TableFormat { Text, Csv, Json, Markdown };
+
+struct TableArguments {
+  std::string path;
+  std::string against;  ///< axis=value,... of the point that ratios are to
+  TableFormat format = TableFormat::Text;
+};
+
+struct CompareArguments {
+  std::string a, b;
+  double confidence = 0.95;
+  bool json = false;
+};
+
 /// What the user asked for.
 struct CommandLine {
   CommandKind kind = CommandKind::Text;
@@ -56,6 +85,9 @@ struct CommandLine {
   std::string info_path;
   ProbeArguments probe;
   ConvertArguments convert;
+  SweepArguments sweep;
+  TableArguments table;
+  CompareArguments compare;
 };
 
 /// Never throws: what is wrong becomes a text with status 2.

@@ -20,4 +20,13 @@ void probe(const Communicator& world, const ProbeArguments& arguments);
 void show_info(const std::string& path);
 void convert(const ConvertArguments& arguments);
 
+/// `barchan sweep`: runs a deck at every point of the axes, again and again, as processes of their
+/// own. Without MPI. Errors: InputError; RunError when a run failed or the sweep was interrupted.
+void sweep(const SweepArguments& arguments);
+
+/// `barchan table` and `barchan compare`: what runs that exist took. Without MPI.
+/// Errors: InputError.
+void print_runs(const TableArguments& arguments);
+void compare(const CompareArguments& arguments);
+
 }  // namespace barchan::app

@@ -160,7 +160,7 @@ void run_deck(const Communicator& world, const RunArguments& arguments) {
   const std::vector<Ring> rings = find_rings(loaded.deck.sources, loaded.begins, loaded.particles);
   catch_signals();
   RunResults results(simulation, folder, loaded.particles,
-                     {arguments.deck, rings, limit, from.continues});
+                     {arguments.deck, rings, limit, from.continues, loaded.deck.keys});
   if (claim && !claim->former().empty())
     results.log().add("took the folder over from " + claim->former() + ", which died");
   // A replay hears nothing from other ranks, so they cannot agree on a checkpoint.

@@ -49,6 +49,9 @@ def find_forwarder(here):
             raise Lacking(f"the forwarder NETLAB_FORWARDER={given}",
                           "build the target netlab_forwarder, or unset it")
         return given
+    installed = os.path.join(here, "netlab_forwarder")
+    if os.access(installed, os.X_OK):
+        return installed
     sources = [os.path.join(here, name) for name in ("forwarder.cpp", "port.hpp", "tun.hpp", "wire.hpp")]
     digest = hashlib.sha256(b"".join(read_bytes(name) for name in sources)).hexdigest()[:16]
     base = os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <barchan/core/deck/canonical.hpp>
 #include <barchan/core/deck/overrides.hpp>
 #include <barchan/core/deck/readers.hpp>
 #include <barchan/core/deck/table_reader.hpp>
@@ -76,6 +77,7 @@ Deck parse_deck(std::string_view text, const std::string& file_name,
   deck::check_regions(draft.deck.sources, draft.deck.model.dimension);
   if (const auto fault = find_fault(draft.deck.model))
     throw InputError(deck::place_of(root, fault->key), fault->what, fault->remedy);
+  draft.deck.keys = deck::canonical_keys(root);
   return std::move(draft.deck);
 }
 

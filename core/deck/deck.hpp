@@ -27,6 +27,7 @@ DeckOverride parse_override(std::string_view argument);
 struct Deck {
   Model model;
   std::vector<ParticleSource> sources;  ///< in deck order
+  std::vector<SourceKey> keys;          ///< all that it says, overrides included; at most 101
 };
 
 /// Reads and checks a deck; a source's relative path is taken from the deck's folder.

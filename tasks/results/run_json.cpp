@@ -141,6 +141,8 @@ void add_further(const RunSummary& s, Json& json) {
   json["walls"] = walls_of(s);
   json["particles_of_ranks"] = s.owned;
   json["machine"] = machine_of(s);
+  json["deck_keys"] = Json::object();
+  for (const auto& [key, value] : s.deck_keys) json["deck_keys"][key] = value;
 }
 
 }  // namespace

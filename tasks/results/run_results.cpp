@@ -102,6 +102,7 @@ RunSummary RunResults::finish(bool interrupted) {
   if (simulation_.model().output.picture)
     write_final_picture(simulation_, folder_.file("picture.png"));
   RunSummary summary = summarize(simulation_, spec_.deck, spec_.limit, interrupted);
+  summary.deck_keys = spec_.deck_keys;
   on_rank_zero([&] { write_run_json(folder_.file("run.json"), summary); });
   log_->add(fmt::format("{} at step {}", interrupted ? "interrupted" : "done", step));
   return summary;

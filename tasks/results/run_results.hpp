@@ -19,6 +19,7 @@ struct ResultsSpec {
   std::vector<Ring> rings;         ///< whose diameters go into the series
   std::optional<StepLimit> limit;  ///< smallest of step_limits()
   bool continues = false;          ///< the folder is that of the checkpoint the simulation is from
+  std::vector<SourceKey> deck_keys = {};  ///< Deck::keys
 };
 
 /// Writes a run's folder as its deck says:

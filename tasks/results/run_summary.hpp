@@ -23,6 +23,7 @@ struct Machine {
 /// A run in numbers, over all ranks: what run.json holds.
 struct RunSummary {
   std::string version, deck, title;
+  std::vector<SourceKey> deck_keys;  ///< what the deck says
   int dimension = 2;
   int ranks = 1, threads = 1;  ///< threads per rank
   std::string exchange, schedule, progress, contact_search, transport, vector;

@@ -7,11 +7,12 @@ rm -rf "$work"/staged "$work"/installed "$work"/embed "$work"/embed_build
 
 cmake --install "$BARCHAN_BUILD" --prefix "$work/staged" > install.log
 mv staged installed
-for path in bin/barchan include/barchan/core/base/vec.hpp share/barchan/examples/embed/CMakeLists.txt; do
+for path in bin/barchan bin/barchan-netlab libexec/barchan/netlab/netlab_forwarder include/barchan/core/base/vec.hpp share/barchan/examples/embed/CMakeLists.txt; do
   [[ -e installed/$path ]] || { echo "not installed: $path"; exit 1; }
 done
 [[ -L installed/include/barchan/core ]] && { echo "headers are installed as links"; exit 1; }
 installed/bin/barchan --version
+installed/bin/barchan-netlab --help > netlab.txt
 
 cp -r installed/share/barchan/examples/embed embed
 cmake -S embed -B embed_build -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_EXPORT_COMPILE_COMMANDS=ON \
