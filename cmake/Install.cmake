@@ -14,6 +14,9 @@ install(DIRECTORY core comm tasks DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/barcha
   FILES_MATCHING PATTERN "*.hpp")
 install(DIRECTORY examples DESTINATION ${CMAKE_INSTALL_DATADIR}/barchan
   PATTERN "*.out" EXCLUDE PATTERN "build" EXCLUDE)
+if(TARGET barchan_c)
+  install(TARGETS barchan_c EXPORT barchanTargets)
+endif()
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 if(TARGET barchan)
   install(TARGETS barchan)

@@ -43,6 +43,7 @@ class Simulation::Engine {
   [[nodiscard]] virtual double force_grain() const = 0;
   virtual void save_checkpoint() = 0;
   // What other solvers call between steps (library_calls.cpp).
+  [[nodiscard]] virtual int num_bricks() const = 0;
   virtual std::vector<ParticleView> owned() = 0;
   virtual std::vector<LoadView> loads() = 0;
   virtual void for_each_view(const std::function<void(const ParticleView&)>& visit) = 0;
@@ -127,6 +128,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   [[nodiscard]] double skin() const override { return parts_.world.skin; }
   [[nodiscard]] double force_grain() const override { return parts_.world.grain.size; }
   void save_checkpoint() override;
+  [[nodiscard]] int num_bricks() const override { return parts_.strip.num_lanes(); }
   std::vector<ParticleView> owned() override;
   std::vector<LoadView> loads() override;
   void for_each_view(const std::function<void(const ParticleView&)>& visit) override;

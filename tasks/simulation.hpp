@@ -154,6 +154,7 @@ class Simulation {
   // ---- for other solvers (docs/library.md); between steps
   /// The particles of this rank, a view for each of its bricks, without a copy. Local.
   [[nodiscard]] std::vector<ParticleView> owned();
+  [[nodiscard]] int num_bricks() const;  ///< of this rank: as many views as owned() gives
   /// Changes whenever views end: rows moved, or loads were cleared. Local.
   [[nodiscard]] std::uint64_t generation() const;
   /// Calls `visit` for the view of every brick, on as many threads as there are. Local.

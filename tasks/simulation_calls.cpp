@@ -77,6 +77,9 @@ std::int64_t Simulation::advance_to(double time) {
 std::vector<ParticleView> Simulation::owned() {
   return between_steps("owned").owned();
 }
+int Simulation::num_bricks() const {
+  return engine().num_bricks();
+}
 std::uint64_t Simulation::generation() const {
   return engine().generation_.value();
 }

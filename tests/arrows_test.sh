@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Layers include downwards only (core <- comm <- tasks <- app), and each outside library has one home.
+# Layers include downwards only (core <- comm <- tasks <- app, bindings), and each outside library has one home.
 set -u
 cd "${BARCHAN_SOURCE:-$(dirname "$0")/..}" || exit 1
 status=0
@@ -18,8 +18,9 @@ forbid() {
 forbid '.barchan/(comm|tasks|app)/' 'core includes no layer above it' core
 forbid '.barchan/(tasks|app)/' 'comm includes no layer above it' comm
 forbid '.barchan/app/' 'tasks includes no layer above it' tasks
-forbid '[<"]mpi(-ext)?\.h' 'only comm includes mpi.h' core tasks app
-forbid '[<"](oneapi|tbb)/' 'only tasks includes TBB' core comm app
+forbid '.barchan/app/' 'bindings stand on tasks, not on the command' bindings
+forbid '[<"]mpi(-ext)?\.h' 'only comm includes mpi.h' core tasks app bindings
+forbid '[<"](oneapi|tbb)/' 'only tasks includes TBB' core comm app bindings
 forbid '[<"]CLI/' 'only app includes CLI11' core comm tasks
 forbid '"' 'includes are written <barchan/LAYER/NAME.hpp>' core comm tasks app
 

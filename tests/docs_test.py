@@ -9,7 +9,7 @@ import sys
 
 TREE = pathlib.Path(os.environ.get("BARCHAN_SOURCE", pathlib.Path(__file__).resolve().parents[1]))
 LAYERS = ("core", "comm", "tasks", "app")
-FOLDERS = LAYERS + ("bench", "cmake", "docs", "examples", "tests")
+FOLDERS = LAYERS + ("bench", "bindings", "cmake", "docs", "examples", "tests")
 NAMED_FILE = re.compile(r"(?<![\w/.<*-])((?:[\w.-]+/)*[\w-]+\.(?:hpp|cpp|md|py|sh|cmake|supp))\b")
 OF_OTHERS = {"--mca", "--bind-to", "--cpu-bind", "--mpi", "--oversubscribe", "--launcher", "--version", "--help",
              "--gtest_filter", "--gtest_repeat", "--preset", "--build", "--install", "--prefix", "--allow-run-as-root"}
@@ -32,10 +32,10 @@ def text_of(path):
 DOCS = [TREE / "README.md", *files("docs", suffixes={".md"}), *(TREE / "bench").glob("*.md"),
         *(TREE / "bench" / "netlab").glob("*.md")]
 ALL_FILES = [p.relative_to(TREE).as_posix() for p in files(*FOLDERS, suffixes={
-    ".hpp", ".cpp", ".md", ".py", ".sh", ".cmake", ".supp"})] + ["README.md", "CHANGELOG.md"]
+    ".hpp", ".cpp", ".md", ".py", ".sh", ".cmake", ".supp", ".h", ".c", ".f90"})] + ["README.md", "CHANGELOG.md"]
 SCRIPTS = [p for p in files("bench", "examples", "tests", suffixes={"", ".py", ".sh"}) if p.name != "docs_test.py"]
 SCRIPTS.append(TREE / "quickstart")
-CODE = [*files(*FOLDERS, suffixes={".hpp", ".cpp", ".cmake", ".txt", ".supp"}), *SCRIPTS, *TREE.glob("CMake*")]
+CODE = [*files(*FOLDERS, suffixes={".hpp", ".cpp", ".h", ".c", ".f90", ".cmake", ".txt", ".supp"}), *SCRIPTS, *TREE.glob("CMake*")]
 CODE_TEXT = "\n".join(map(text_of, CODE))
 WORDS = set(re.findall(r"\w+", CODE_TEXT))
 OPTIONS = set(re.findall(r"(?<![\w-])--[a-z][\w-]*", "\n".join(map(text_of, [*files("app", suffixes={".cpp"}), *SCRIPTS]))))

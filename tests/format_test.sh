@@ -6,7 +6,7 @@ cd "${BARCHAN_SOURCE:-$(dirname "$0")/..}" || exit 1
 formatter=$(command -v clang-format-14 || command -v clang-format) ||
   { echo "clang-format is not installed"; exit 77; }
 
-mapfile -t files < <(find core comm tasks app tests examples bench \
+mapfile -t files < <(find core comm tasks app bindings tests examples bench \
   \( -name build -o -name '*.out' \) -prune -o \( -name '*.hpp' -o -name '*.cpp' \) -print | sort)
 if [[ ${1:-} == --fix ]]; then
   "$formatter" -i "${files[@]}"

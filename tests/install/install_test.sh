@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs, moves the installed tree, then builds and runs the embedding example from that tree alone.
+# Installs, moves the installed tree, then builds and runs the examples in C++, C and Fortran from that tree alone.
 set -eu
 [[ $PWD != "$BARCHAN_SOURCE" ]] || { echo "run this in a folder of its own"; exit 1; }
 work=$PWD
@@ -7,8 +7,9 @@ rm -rf "$work"/staged "$work"/installed "$work"/embed "$work"/embed_build
 
 cmake --install "$BARCHAN_BUILD" --prefix "$work/staged" > install.log
 mv staged installed
-for path in bin/barchan bin/barchan-netlab libexec/barchan/netlab/netlab_forwarder include/barchan/core/base/vec.hpp share/barchan/examples/embed/CMakeLists.txt; do
-  [[ -e installed/$path ]] || { echo "not installed: $path"; exit 1; }
+for path in bin/barchan bin/barchan-netlab libexec/barchan/netlab/netlab_forwarder include/barchan.h \
+  lib*/pkgconfig/barchan.pc include/barchan/core/base/vec.hpp share/barchan/examples/embed/CMakeLists.txt; do
+  compgen -G "installed/$path" > /dev/null || { echo "not installed: $path"; exit 1; }
 done
 [[ -L installed/include/barchan/core ]] && { echo "headers are installed as links"; exit 1; }
 installed/bin/barchan --version
@@ -23,3 +24,29 @@ if grep -E "$BARCHAN_SOURCE/(core|comm|tasks|include)|$BARCHAN_BUILD/(include|li
   exit 1
 fi
 mpirun -n 2 embed_build/embed
+
+# C through pkg-config, with flags that must not reach barchan's arithmetic; another compiler, where there is one.
+export PKG_CONFIG_PATH LD_LIBRARY_PATH
+PKG_CONFIG_PATH=$(dirname "$work"/installed/lib*/pkgconfig/barchan.pc)
+LD_LIBRARY_PATH=$(dirname "$PKG_CONFIG_PATH")${LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}
+read -ra flags <<< "$(pkg-config --cflags --libs barchan) $(pkg-config --cflags --libs ompi-c) -lm"
+coupling=$work/installed/share/barchan/examples/coupling
+cc -std=c99 -Wall -Wextra -Werror -pedantic "$BARCHAN_SOURCE/tests/install/abi.c" -o abi "${flags[@]}"
+cc -O3 -march=native -ffast-math "$BARCHAN_SOURCE/tests/install/abi.c" -o abi_fast "${flags[@]}"
+programs="abi abi_fast"
+if command -v clang > /dev/null; then
+  clang -std=c11 -O2 "$BARCHAN_SOURCE/tests/install/abi.c" -o abi_clang "${flags[@]}"
+  programs+=" abi_clang"
+fi
+digests=$(for program in $programs; do for ranks in 1 2 3; do
+  mpirun -n "$ranks" "./$program" "$BARCHAN_SOURCE/tests/install/abi.toml" || echo "$program failed on $ranks ranks"
+done; done | sort -u)
+[[ $digests =~ ^[0-9a-f]{16}$ ]] || { printf 'not one digest from C, whatever flags and ranks:\n%s\n' "$digests"; exit 1; }
+cc -Wall -Wextra -Werror "$coupling/sink.c" -o sink "${flags[@]}"
+mpirun -n 2 ./sink "$coupling/fluid.toml"
+if command -v mpifort > /dev/null && command -v gfortran > /dev/null; then
+  mpifort "$coupling/sink.f90" -o sink_fortran "${flags[@]}"
+  mpirun -n 2 ./sink_fortran "$coupling/fluid.toml"
+fi
+exported=$(nm -D --defined-only "${LD_LIBRARY_PATH%%:*}/libbarchan.so" | grep -cv -e ' barchan_' -e ' BARCHAN_' || true)
+[[ $exported == 0 ]] || { echo "libbarchan.so exports $exported names that are not of barchan.h"; exit 1; }

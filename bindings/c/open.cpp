@@ -1,0 +1,157 @@
+// From a deck to a handle, and its end.
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <barchan/comm/base/fortran_handle.hpp>
+#include <barchan/comm/base/mpi_session.hpp>
+#include <barchan/core/deck/deck.hpp>
+#include <barchan/core/generators/make_particles.hpp>
+#include <barchan/tasks/agree.hpp>
+#include <barchan/tasks/checkpoint_load.hpp>
+
+#include "handle.hpp"
+
+namespace {
+
+using barchan::c::guarded;
+using barchan::c::require;
+
+struct Settings {
+  std::vector<barchan::DeckOverride> deck;
+  barchan::RunOptions options;
+};
+
+int number_of(const std::string& key, const std::string& value) {
+  std::size_t end = 0;
+  int number = 0;
+  try {
+    number = std::stoi(value, &end);
+  } catch (const std::exception&) {
+    end = 0;
+  }
+  if (value.empty() || end != value.size() || number < 0)
+    throw barchan::InputError("the setting " + key + "=" + value + " is no number",
+                              "give a whole number, such as " + key + "=2");
+  return number;
+}
+
+void take_option(const std::string& line, barchan::RunOptions& options) {
+  const auto equal = line.find('=');
+  const std::string key = line.substr(0, equal),
+                    value = equal == std::string::npos ? "" : line.substr(equal + 1);
+  if (key == "--threads")
+    options.threads = number_of(key, value);
+  else if (key == "--exchange")
+    options.exchange = value;
+  else if (key == "--vector")
+    options.vector = value;
+  else if (key == "--schedule" && (value == "overlap" || value == "sequential"))
+    options.schedule =
+        value == "overlap" ? barchan::Schedule::Overlap : barchan::Schedule::Sequential;
+  else
+    throw barchan::InputError(
+        "there is no setting " + line,
+        "--threads=N, --exchange=NAME, --vector=NAME, --schedule=overlap or sequential");
+}
+
+Settings settings_of(const char* text) {
+  Settings settings;
+  std::istringstream lines(text == nullptr ? "" : text);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty()) continue;
+    if (line.starts_with("--"))
+      take_option(line, settings.options);
+    else
+      settings.deck.push_back(barchan::parse_override(line));
+  }
+  return settings;
+}
+
+void hand_out(barchan::Simulation&& simulation, barchan_sim** sim) {
+  *sim = std::make_unique<barchan_sim>(std::move(simulation)).release();
+  barchan::c::note(*sim);
+}
+
+template <class Read>
+int open(const char* from, int comm, const char* settings, barchan_sim** sim, Read&& read) {
+  return guarded([&] {
+    require(sim != nullptr, "barchan_open: nowhere to put the simulation");
+    require(from != nullptr, "barchan_open: the deck is NULL");
+    *sim = nullptr;
+    barchan::Communicator ranks = barchan::communicator_of(comm);
+    Settings chosen;
+    barchan::Deck deck;
+    barchan::ParticleSet particles;
+    barchan::agree(ranks, [&] {
+      chosen = settings_of(settings);
+      deck = read(chosen.deck);
+      particles = barchan::make_particles(deck.model, deck.sources);
+    });
+    hand_out({deck.model, particles, std::move(ranks), chosen.options}, sim);
+  });
+}
+
+}  // namespace
+
+extern "C" {
+
+const char* barchan_version() {
+  return BARCHAN_VERSION;
+}
+
+void barchan_abi(int* major, int* minor) {
+  if (major != nullptr) *major = BARCHAN_ABI_MAJOR;
+  if (minor != nullptr) *minor = BARCHAN_ABI_MINOR;
+}
+
+int barchan_start_mpi() {
+  return guarded([] { static const barchan::MpiSession session; });
+}
+
+int barchan_world() {
+  return barchan::world_handle();
+}
+
+int barchan_open(const char* deck, const char* settings, int comm, barchan_sim** sim) {
+  return open(deck, comm, settings, sim,
+              [&](const auto& overrides) { return barchan::read_deck(deck, overrides); });
+}
+
+int barchan_open_text(const char* toml, const char* settings, int comm, barchan_sim** sim) {
+  return open(toml, comm, settings, sim,
+              [&](const auto& overrides) { return barchan::parse_deck(toml, "deck", overrides); });
+}
+
+int barchan_restore(const char* deck, const char* settings, const char* checkpoint, int comm,
+                    barchan_sim** sim) {
+  return guarded([&] {
+    require(sim != nullptr && deck != nullptr && checkpoint != nullptr,
+            "barchan_restore: deck, checkpoint and simulation must not be NULL");
+    *sim = nullptr;
+    barchan::Communicator ranks = barchan::communicator_of(comm);
+    Settings chosen;
+    barchan::Deck read;
+    barchan::agree(ranks, [&] {
+      chosen = settings_of(settings);
+      read = barchan::read_deck(deck, chosen.deck);
+    });
+    const auto found = barchan::find_checkpoint(ranks, checkpoint);
+    if (!found)
+      throw barchan::InputError(std::string("there is no checkpoint in ") + checkpoint,
+                                "barchan_write_checkpoint writes one");
+    hand_out(
+        barchan::Simulation::restore(read.model, found->path, std::move(ranks), chosen.options),
+        sim);
+  });
+}
+
+int barchan_close(barchan_sim* sim) {
+  const int code = barchan::c::with(sim, [](const barchan::Simulation&) {});
+  if (code != BARCHAN_OK) return code;
+  barchan::c::forget(sim);
+  return guarded([&] { delete sim; });
+}
+
+}  // extern "C"

@@ -1,0 +1,99 @@
+/* The C ABI from plain C: wrong calls are refused in words, and roll-backs leave no trace. Prints the
+ * digest, which no flag of this program's own compiler may change. */
+#include <barchan.h>
+#include <mpi.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int failures = 0;
+
+static void expect(int is_right, const char* what) {
+  if (is_right) return;
+  fprintf(stderr, "abi: %s (last error: '%s')\n", what, barchan_error());
+  ++failures;
+}
+
+static void expect_error(int code, int wanted, const char* words) {
+  if (code == wanted && strstr(barchan_error(), words) != NULL) return;
+  fprintf(stderr, "abi: code %d instead of %d, '%s' instead of '%s'\n", code, wanted,
+          barchan_error(), words);
+  ++failures;
+}
+
+static void push(barchan_sim* sim, double force) {
+  barchan_info info;
+  expect(barchan_get_info(sim, &info) == BARCHAN_OK, "info");
+  for (int b = 0; b < info.num_bricks; ++b) {
+    barchan_loads loads;
+    expect(barchan_get_loads(sim, b, &loads) == BARCHAN_OK, "loads");
+    for (int64_t i = 0; i < loads.size; ++i) {
+      loads.forces[i * loads.stride + 1] = force;
+      loads.torques_by_radius[i * loads.stride] = 0.5 * force;
+    }
+  }
+}
+
+static void wrong_calls(barchan_sim* sim, const char* deck, int comm) {
+  barchan_sim* none = NULL;
+  const int64_t id = 1000000;
+  const double zeros[3] = {0.0, 0.0, 0.0};
+  expect_error(barchan_run(NULL, 1, NULL), BARCHAN_WRONG_CALL, "NULL");
+  expect_error(barchan_run((barchan_sim*)zeros, 1, NULL), BARCHAN_WRONG_CALL, "no such simulation");
+  expect_error(barchan_run(sim, -1, NULL), BARCHAN_WRONG_CALL, "-1 steps");
+  expect_error(barchan_open("no.toml", NULL, comm, &none), BARCHAN_WRONG_INPUT, "no.toml");
+  expect_error(barchan_open(NULL, NULL, comm, &none), BARCHAN_WRONG_CALL, "NULL");
+  expect_error(barchan_open(deck, "time.stepp=1", comm, &none), BARCHAN_WRONG_INPUT, "stepp");
+  expect_error(barchan_open(deck, "--thread=1", comm, &none), BARCHAN_WRONG_INPUT, "--thread=1");
+  expect_error(barchan_open(deck, "--threads=x", comm, &none), BARCHAN_WRONG_INPUT, "no number");
+  expect_error(barchan_open(deck, NULL, 123456, &none), BARCHAN_WRONG_INPUT, "123456");
+  expect_error(barchan_open_text("dimension = 4", NULL, comm, &none), BARCHAN_WRONG_INPUT, "deck");
+  expect(none == NULL, "a simulation was made from a wrong deck");
+  expect_error(barchan_set_loads(sim, 1, &id, zeros, NULL), BARCHAN_WRONG_CALL, "1000000");
+  expect_error(barchan_set_loads(sim, 1, &id, NULL, NULL), BARCHAN_WRONG_CALL, "NULL");
+  expect_error(barchan_scatter(sim, BARCHAN_FORCE, 1, &id, zeros), BARCHAN_WRONG_INPUT, "1000000");
+  expect_error(barchan_scatter(sim, 99, 1, &id, zeros), BARCHAN_WRONG_CALL, "field");
+  expect_error(barchan_remove(sim, 1, &id), BARCHAN_WRONG_INPUT, "1000000");
+  expect_error(barchan_set_wall_load(sim, "lid", 1.0), BARCHAN_WRONG_CALL, "'floor'");
+  expect_error(barchan_load(sim, NULL), BARCHAN_WRONG_CALL, "state");
+  barchan_view view;
+  expect_error(barchan_get_view(sim, 99, BARCHAN_RADIUS, &view), BARCHAN_WRONG_CALL, "brick");
+  expect_error(barchan_get_view(sim, 0, BARCHAN_FORCE, &view), BARCHAN_WRONG_CALL, "no array");
+  expect_error(barchan_get_view(sim, 0, BARCHAN_RADIUS, NULL), BARCHAN_WRONG_CALL, "NULL");
+  int major = -1;
+  barchan_abi(&major, NULL);
+  expect(major == BARCHAN_ABI_MAJOR, "the library is of another ABI");
+}
+
+int main(int argc, char** argv) {
+  int level = 0, rank = 0;
+  MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &level);
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+  const int comm = (int)MPI_Comm_c2f(MPI_COMM_WORLD);
+  barchan_sim* sim = NULL;
+  expect(barchan_open(argv[1], "particles.1.seed=3\n--threads=2", comm, &sim) == BARCHAN_OK,
+         "open");
+  if (sim == NULL) MPI_Abort(MPI_COMM_WORLD, 1);
+  wrong_calls(sim, argv[1], comm);
+
+  barchan_state* state = NULL;
+  for (int k = 0; k < 5; ++k) {
+    expect(barchan_save(sim, &state) == BARCHAN_OK, "save");
+    push(sim, -0.5);
+    expect(barchan_run(sim, 7 * k, NULL) == BARCHAN_OK, "an excursion");
+    expect(barchan_load(sim, state) == BARCHAN_OK, "load");
+    push(sim, 0.25);
+    int64_t done = 0;
+    expect(barchan_run(sim, 20, &done) == BARCHAN_OK && done == 20, "run");
+  }
+  expect(barchan_free_state(state) == BARCHAN_OK, "free");
+  expect_error(barchan_load(sim, state), BARCHAN_WRONG_CALL, "no such state");
+  uint64_t digest = 0;
+  expect(barchan_digest(sim, &digest) == BARCHAN_OK, "digest");
+  expect(barchan_close(sim) == BARCHAN_OK, "close");
+  expect_error(barchan_run(sim, 1, NULL), BARCHAN_WRONG_CALL, "closed");
+  if (rank == 0) printf("%016llx\n", (unsigned long long)digest);
+  MPI_Allreduce(MPI_IN_PLACE, &failures, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+  MPI_Finalize();
+  return failures == 0 ? 0 : 1;
+}
