@@ -203,7 +203,8 @@ CommandKind kind_of(const CLI::App& root) {
       {"run", CommandKind::Run},         {"check", CommandKind::Check},
       {"info", CommandKind::Info},       {"probe", CommandKind::Probe},
       {"convert", CommandKind::Convert}, {"sweep", CommandKind::Sweep},
-      {"table", CommandKind::Table},     {"compare", CommandKind::Compare}};
+      {"table", CommandKind::Table},     {"compare", CommandKind::Compare},
+      {"report", CommandKind::Report}};
   return kKinds.at(root.get_subcommands().front()->get_name());
 }
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <barchan/comm/probe/probe.hpp>
@@ -13,7 +14,7 @@ inline constexpr int kDone = 0;
 inline constexpr int kFailed = 1;
 inline constexpr int kWrongInput = 2;
 
-enum class CommandKind { Text, Run, Check, Info, Probe, Convert, Sweep, Table, Compare };
+enum class CommandKind { Text, Run, Check, Info, Probe, Convert, Sweep, Table, Compare, Report };
 
 struct RunArguments {
   std::string deck;
@@ -75,6 +76,14 @@ struct CompareArguments {
   bool json = false;
 };
 
+struct ReportArguments {
+  std::string path;
+  std::string out;                    ///< empty: in the folder, or by the deck's name
+  std::vector<std::string> settings;  ///< key=value, of a deck
+  int frames = 40;                    ///< snapshots at most
+  std::optional<std::pair<std::int64_t, std::int64_t>> steps;  ///< of the timeline
+};
+
 /// What the user asked for.
 struct CommandLine {
   CommandKind kind = CommandKind::Text;
@@ -88,6 +97,7 @@ struct CommandLine {
   SweepArguments sweep;
   TableArguments table;
   CompareArguments compare;
+  ReportArguments report;
 };
 
 /// Never throws: what is wrong becomes a text with status 2.

@@ -29,4 +29,8 @@ void sweep(const SweepArguments& arguments);
 void print_runs(const TableArguments& arguments);
 void compare(const CompareArguments& arguments);
 
+/// `barchan report`: a page for a browser, of a run, a sweep or a deck. Without MPI.
+/// Errors: InputError.
+void report(const ReportArguments& arguments);
+
 }  // namespace barchan::app

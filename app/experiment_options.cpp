@@ -1,3 +1,5 @@
+#include <charconv>
+
 #include <barchan/app/options.hpp>
 #include <barchan/core/base/nearest.hpp>
 
@@ -140,12 +142,58 @@ void add_compare(CLI::App& root, CompareArguments& compare) {
   command.add_flag("--json", compare.json, "Print JSON instead of tables");
 }
 
+/// A:B as two numbers.
+std::optional<std::pair<std::int64_t, std::int64_t>> step_window(const std::string& text) {
+  std::pair<std::int64_t, std::int64_t> window;
+  const auto colon = text.find(':');
+  const auto is_number = [](const std::string& word, std::int64_t& value) {
+    const auto read = std::from_chars(word.data(), word.data() + word.size(), value);
+    return read.ec == std::errc() && read.ptr == word.data() + word.size() && !word.empty();
+  };
+  const bool is_window =
+      colon != std::string::npos && is_number(text.substr(0, colon), window.first) &&
+      is_number(text.substr(colon + 1), window.second) && window.first <= window.second;
+  if (!is_window) return std::nullopt;
+  return window;
+}
+
+void add_report(CLI::App& root, ReportArguments& report) {
+  CLI::App& command = *root.add_subcommand(
+      "report",
+      "Write a page for a browser: particles, plots, timeline, sweep, or what a deck makes");
+  command.add_option("path", report.path, "Folder of a run or sweep, or a deck")
+      ->required()
+      ->type_name("RUN|DIR|DECK")
+      ->check(not_empty());
+  command
+      .add_option("--out", report.out, "The page; default: report.html in the folder, or DECK.html")
+      ->type_name("FILE")
+      ->check(not_empty());
+  command.add_option("--frames", report.frames, "Show at most so many snapshots; default: 40")
+      ->type_name("N")
+      ->transform(whole_number())
+      ->check(CLI::Range(1, 10000));
+  command
+      .add_option_function<std::string>(
+          "--steps", [&report](const std::string& text) { report.steps = step_window(text); },
+          "Steps of the timeline, such as 1000:1010; default: the last ones of the trace")
+      ->type_name("A:B")
+      ->check(CLI::Validator(
+          [](std::string& text) -> std::string {
+            return step_window(text) ? ""
+                                     : "'" + text + "' is no range of steps, such as 1000:1010";
+          },
+          ""));
+  add_settings(command, report.settings);
+}
+
 }  // namespace
 
 void add_experiments(CLI::App& root, CommandLine& line) {
   add_sweep(root, line.sweep);
   add_table(root, line.table);
   add_compare(root, line.compare);
+  add_report(root, line.report);
 }
 
 }  // namespace barchan::app

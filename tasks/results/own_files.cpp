@@ -28,18 +28,20 @@ constexpr std::size_t kHead = 4096;  // bytes of a file that are looked at
 struct Result {
   std::string_view name, beginning;
 };
-constexpr std::array<Result, 6> kResults{
+constexpr std::array<Result, 7> kResults{
     {{"run.json", "{\n"},
      {"series.csv", "step,time,kinetic_energy,contacts,max_overlap"},
      {"picture.png", "\x89PNG\r\n\x1a\n"},
      {"trace.json", "{\"displayTimeUnit\":\"ns\",\"traceEvents\":["},
      {"log.txt", "barchan "},
+     {"report.html", "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"},
      {"left_domain.csv", "step,id,x,y"}}};
 constexpr std::string_view kVtk = "<?xml version=\"1.0\"?>\n<VTKFile type=\"";
 /// What else is near the beginning.
-constexpr std::array<Result, 3> kMarks{{{"run.json", "\"state_digest\""},
+constexpr std::array<Result, 4> kMarks{{{"run.json", "\"state_digest\""},
                                         {"picture.png", "tEXtSoftware\0barchan"sv},
-                                        {"log.txt", ": from step "}}};
+                                        {"log.txt", ": from step "},
+                                        {"report.html", "content=\"barchan report\""}}};
 
 [[noreturn]] void refuse(const fs::path& path, const std::string& why) {
   throw InputError(SourcePlace{path.string(), 0, 0}, why,
