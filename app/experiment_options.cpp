@@ -169,7 +169,7 @@ void add_report(CLI::App& root, ReportArguments& report) {
       .add_option("--out", report.out, "The page; default: report.html in the folder, or DECK.html")
       ->type_name("FILE")
       ->check(not_empty());
-  command.add_option("--frames", report.frames, "Show at most so many snapshots; default: 40")
+  command.add_option("--frames", report.frames, "The most snapshots to show; default: 40")
       ->type_name("N")
       ->transform(whole_number())
       ->check(CLI::Range(1, 10000));

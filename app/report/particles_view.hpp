@@ -16,9 +16,9 @@ namespace barchan::app {
 ///     radius, speed, spin   the largest ones; values are parts of them, 0 to 65535
 ///     materials, ranks      names, by number from 0
 ///     note                  what was left out
-///     frames                step, time, n and in base64 position, speed, spin (16 bit), rank (8 bit),
-///                           bonds (float x y z of both ends); radius (16 bit) and type (8 bit) where
-///                           they differ from those before
+///     frames                step, time, n; in base64 position, speed, spin (16 bit), rank (8 bit),
+///                           bonds (float x y z of both ends); radius (16 bit) and type (8 bit)
+///                           where they differ from those before
 struct ViewOptions {
   int most_frames = 40;
   std::size_t most_bytes = 24U << 20;  ///< of all frames, before base64
