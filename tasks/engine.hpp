@@ -46,6 +46,8 @@ class Simulation::Engine {
   [[nodiscard]] virtual int num_bricks() const = 0;
   virtual std::vector<ParticleView> owned() = 0;
   virtual std::vector<LoadView> loads() = 0;
+  virtual std::shared_ptr<const void> release_arrays() = 0;
+  [[nodiscard]] virtual std::int64_t highest_id() = 0;
   virtual void for_each_view(const std::function<void(const ParticleView&)>& visit) = 0;
   virtual void set_loads(const Loads& loads) = 0;
   virtual Gathered gather(ParticleField field) = 0;
@@ -131,6 +133,8 @@ class Simulation::EngineOf final : public Simulation::Engine {
   [[nodiscard]] int num_bricks() const override { return parts_.strip.num_lanes(); }
   std::vector<ParticleView> owned() override;
   std::vector<LoadView> loads() override;
+  std::shared_ptr<const void> release_arrays() override;
+  [[nodiscard]] std::int64_t highest_id() override;
   void for_each_view(const std::function<void(const ParticleView&)>& visit) override;
   void set_loads(const Loads& loads) override;
   Gathered gather(ParticleField field) override;

@@ -11,104 +11,17 @@
 #include <barchan/core/base/error.hpp>
 #include <barchan/tasks/agree.hpp>
 #include <barchan/tasks/engine.hpp>
+#include <barchan/tasks/load_rows.hpp>
 
 namespace barchan {
 namespace {
 
-template <int Dim>
-constexpr int kTurns = Dim == 2 ? 1 : 3;
-/// Where the c-th number of an angular velocity or torque is among three.
-template <int Dim>
-constexpr int place_of_turn(int c) {
-  return Dim == 2 ? 2 : c;
-}
-
-/// Loads of all owned rows can be written.
-template <int Dim>
-void make_room(ParticleStore<Dim>& store) {
-  constexpr std::size_t kForce = Layout<Dim>::kForce;
-  store.external.resize(static_cast<std::size_t>(store.num_owned) * kForce, 0.0);
-}
-
-template <int Dim>
-void put_load(ParticleStore<Dim>& store, std::int32_t row, const double* force,
-              const double* torque) {
-  double* to =
-      store.external.data() + std::size_t{Layout<Dim>::kForce} * static_cast<std::size_t>(row);
-  if (force != nullptr) std::copy_n(force, Dim, to);
-  if (torque == nullptr) return;
-  const double r = store.radius(row);
-  for (int c = 0; c < kTurns<Dim>; ++c)
-    to[Layout<Dim>::kTorque + c] = torque[place_of_turn<Dim>(c)] / r;
-}
-
-/// One record of a gather.
-struct Row {
-  std::int64_t id = 0;
-  double values[3] = {};
+/// The arrays that views show, of one brick.
+struct ReleasedArrays {
+  AlignedVector<double> motion, spin, density, external;
+  AlignedVector<std::int64_t> id;
+  AlignedVector<std::uint8_t> type;
 };
-
-template <int Dim>
-Row row_of(const ParticleStore<Dim>& store, std::int32_t i, ParticleField field) {
-  using F = ParticleField;
-  Row row{store.id[static_cast<std::size_t>(i)], {}};
-  const double* load =
-      store.external.empty()
-          ? nullptr
-          : store.external.data() + std::size_t{Layout<Dim>::kForce} * static_cast<std::size_t>(i);
-  const auto turn = [&](const double* from, double factor) {
-    for (int c = 0; c < kTurns<Dim>; ++c) row.values[place_of_turn<Dim>(c)] = from[c] * factor;
-  };
-  switch (field) {
-    case F::Position:
-      std::copy_n(store.x(i), Dim, row.values);
-      break;
-    case F::Velocity:
-      std::copy_n(store.v(i), Dim, row.values);
-      break;
-    case F::AngularVelocity:
-      for (int c = 0; c < kTurns<Dim>; ++c)
-        row.values[place_of_turn<Dim>(c)] = store.u(i)[c] / store.radius(i);
-      break;
-    case F::Force:
-      if (load != nullptr) std::copy_n(load, Dim, row.values);
-      break;
-    case F::Torque:
-      if (load != nullptr) turn(load + Layout<Dim>::kTorque, store.radius(i));
-      break;
-    case F::Radius:
-      row.values[0] = store.radius(i);
-      break;
-    case F::Mass: {
-      const double im = store.inverse_mass(i);
-      row.values[0] = im > 0.0 ? 1.0 / im : std::numeric_limits<double>::infinity();
-      break;
-    }
-    case F::Type:
-      row.values[0] = store.type[static_cast<std::size_t>(i)];
-      break;
-  }
-  return row;
-}
-
-template <int Dim>
-void put_value(ParticleStore<Dim>& store, std::int32_t row, ParticleField field,
-               const double* value) {
-  switch (field) {
-    case ParticleField::Velocity:
-      std::copy_n(value, Dim, store.v(row));
-      break;
-    case ParticleField::AngularVelocity:
-      for (int c = 0; c < kTurns<Dim>; ++c)
-        store.u(row)[c] = store.radius(row) * value[place_of_turn<Dim>(c)];
-      break;
-    case ParticleField::Force:
-      put_load(store, row, value, nullptr);
-      break;
-    default:
-      put_load(store, row, nullptr, value);
-  }
-}
 
 }  // namespace
 
@@ -148,10 +61,42 @@ std::vector<LoadView> Simulation::EngineOf<Dim>::loads() {
     const auto n = static_cast<std::size_t>(s.num_owned);
     views.emplace_back(
         StridedSpan<double>(s.external.data(), n, Dim, L::kForce),
-        StridedSpan<double>(s.external.data() + L::kTorque, n, kTurns<Dim>, L::kForce),
+        StridedSpan<double>(s.external.data() + L::kTorque, n, kSpins<Dim>, L::kForce),
         StridedSpan<const double>(s.motion.data() + L::kRadius, n, 1, L::kMotion), generation_);
   }
   return views;
+}
+
+template <int Dim>
+std::shared_ptr<const void> Simulation::EngineOf<Dim>::release_arrays() {
+  auto released = std::make_shared<std::vector<ReleasedArrays>>();
+  for (Lane<Dim>& lane : parts_.strip.lanes()) {
+    ParticleStore<Dim>& s = lane.brick.store;
+    ReleasedArrays& old = released->emplace_back();
+    const auto release = [](auto& array, auto& to) {
+      to = std::move(array);
+      array = to;
+    };
+    release(s.motion, old.motion);
+    release(s.spin, old.spin);
+    release(s.density, old.density);
+    release(s.external, old.external);
+    release(s.id, old.id);
+    release(s.type, old.type);
+  }
+  generation_.advance();
+  return released;
+}
+
+template <int Dim>
+std::int64_t Simulation::EngineOf<Dim>::highest_id() {
+  std::int64_t highest = 0;
+  for (const Lane<Dim>& lane : parts_.strip.lanes()) {
+    for (std::int32_t i = 0; i < lane.brick.store.num_owned; ++i)
+      highest = std::max(highest, lane.brick.store.id[static_cast<std::size_t>(i)]);
+  }
+  communicator_.allreduce_max(std::span(&highest, 1));
+  return highest;
 }
 
 template <int Dim>
@@ -203,51 +148,6 @@ void Simulation::EngineOf<Dim>::set_loads(const Loads& loads) {
       if (torque != nullptr) torque += 3;
     }
   }
-}
-
-template <int Dim>
-Gathered Simulation::EngineOf<Dim>::gather(ParticleField field) {
-  std::vector<Row> mine;
-  mine.reserve(static_cast<std::size_t>(num_owned()));
-  for (const Lane<Dim>& lane : parts_.strip.lanes()) {
-    for (std::int32_t i = 0; i < lane.brick.store.num_owned; ++i)
-      mine.push_back(row_of(lane.brick.store, i, field));
-  }
-  std::vector<Row> all = communicator_.gather_all(std::span<const Row>(mine));
-  std::sort(all.begin(), all.end(), [](const Row& a, const Row& b) { return a.id < b.id; });
-  Gathered gathered;
-  for (const Row& row : all) {
-    gathered.ids.push_back(row.id);
-    gathered.values.insert(gathered.values.end(), row.values, row.values + width_of(field));
-  }
-  return gathered;
-}
-
-template <int Dim>
-void Simulation::EngineOf<Dim>::scatter(ParticleField field, std::span<const std::int64_t> ids,
-                                        std::span<const double> values) {
-  const bool is_motion =
-      field == ParticleField::Velocity || field == ParticleField::AngularVelocity;
-  const std::vector<ParticlePlace> found = find_all(ids, "scatter");
-  agree(communicator_, [&] {
-    for (std::size_t k = 0; k < ids.size() && is_motion; ++k) {
-      const ParticlePlace at = found[k];
-      if (at.lane >= 0 && parts_.strip.lane(at.lane).brick.store.inverse_mass(at.row) == 0.0)
-        throw InputError(fmt::format("Simulation::scatter: particle {} is fixed", ids[k]),
-                         "leave it out");
-    }
-  });
-  if (!is_motion) {
-    for (Lane<Dim>& lane : parts_.strip.lanes()) make_room(lane.brick.store);
-  }
-  for (std::size_t k = 0; k < ids.size(); ++k) {
-    if (found[k].lane >= 0)
-      put_value(parts_.strip.lane(found[k].lane).brick.store, found[k].row, field,
-                values.data() + 3 * k);
-  }
-  if (!is_motion) return;
-  schedule_.amend(step_, 0, lists_.top_speed());
-  renew_lists();  // ghosts get the new velocities, too
 }
 
 template <int Dim>

@@ -157,6 +157,11 @@ class Simulation {
   [[nodiscard]] int num_bricks() const;  ///< of this rank: as many views as owned() gives
   /// Changes whenever views end: rows moved, or loads were cleared. Local.
   [[nodiscard]] std::uint64_t generation() const;
+  /// Ends all views, and gives away the memory that they show; the simulation goes on in a copy. So
+  /// whoever keeps the result can read their spans on, as values of this moment. Local.
+  [[nodiscard]] std::shared_ptr<const void> release_arrays();
+  /// The highest id on all ranks; 0: there is none. Collective.
+  [[nodiscard]] std::int64_t highest_id();
   /// Calls `visit` for the view of every brick, on as many threads as there are. Local.
   void for_each_view(const std::function<void(const ParticleView&)>& visit);
   /// Loads to write in place, brick by brick as owned(). Local.

@@ -86,6 +86,12 @@ std::uint64_t Simulation::generation() const {
 void Simulation::for_each_view(const std::function<void(const ParticleView&)>& visit) {
   between_steps("for_each_view").for_each_view(visit);
 }
+std::shared_ptr<const void> Simulation::release_arrays() {
+  return engine().release_arrays();
+}
+std::int64_t Simulation::highest_id() {
+  return between_steps("highest_id").highest_id();
+}
 std::vector<LoadView> Simulation::loads() {
   return between_steps("loads").loads();
 }

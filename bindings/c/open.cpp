@@ -2,14 +2,14 @@
 #include <memory>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <barchan/comm/base/fortran_handle.hpp>
 #include <barchan/comm/base/mpi_session.hpp>
 #include <barchan/core/deck/deck.hpp>
-#include <barchan/core/generators/make_particles.hpp>
 #include <barchan/tasks/agree.hpp>
-#include <barchan/tasks/checkpoint_load.hpp>
+#include <barchan/tasks/open_deck.hpp>
 
 #include "handle.hpp"
 
@@ -19,7 +19,7 @@ using barchan::c::guarded;
 using barchan::c::require;
 
 struct Settings {
-  std::vector<barchan::DeckOverride> deck;
+  std::vector<barchan::DeckOverride> overrides;
   barchan::RunOptions options;
 };
 
@@ -64,33 +64,29 @@ Settings settings_of(const char* text) {
     if (line.starts_with("--"))
       take_option(line, settings.options);
     else
-      settings.deck.push_back(barchan::parse_override(line));
+      settings.overrides.push_back(barchan::parse_override(line));
   }
   return settings;
 }
 
-void hand_out(barchan::Simulation&& simulation, barchan_sim** sim) {
-  *sim = std::make_unique<barchan_sim>(std::move(simulation)).release();
-  barchan::c::note(*sim);
-}
-
-template <class Read>
-int open(const char* from, int comm, const char* settings, barchan_sim** sim, Read&& read) {
+int open(barchan::DeckSource source, const char* settings, const char* checkpoint, int comm,
+         barchan_sim** sim) {
   return guarded([&] {
     require(sim != nullptr, "barchan_open: nowhere to put the simulation");
-    require(from != nullptr, "barchan_open: the deck is NULL");
     *sim = nullptr;
     barchan::Communicator ranks = barchan::communicator_of(comm);
     Settings chosen;
-    barchan::Deck deck;
-    barchan::ParticleSet particles;
-    barchan::agree(ranks, [&] {
-      chosen = settings_of(settings);
-      deck = read(chosen.deck);
-      particles = barchan::make_particles(deck.model, deck.sources);
-    });
-    hand_out({deck.model, particles, std::move(ranks), chosen.options}, sim);
+    barchan::agree(ranks, [&] { chosen = settings_of(settings); });
+    source.overrides = std::move(chosen.overrides);
+    auto handle = std::make_unique<barchan_sim>(
+        barchan::open_deck(source, std::move(ranks), chosen.options, checkpoint));
+    barchan::c::note(handle.get());
+    *sim = handle.release();
   });
+}
+
+int refuse_null(const char* what) {
+  return barchan::c::fail(BARCHAN_WRONG_CALL, std::string(what) + " is NULL");
 }
 
 }  // namespace
@@ -115,36 +111,20 @@ int barchan_world() {
 }
 
 int barchan_open(const char* deck, const char* settings, int comm, barchan_sim** sim) {
-  return open(deck, comm, settings, sim,
-              [&](const auto& overrides) { return barchan::read_deck(deck, overrides); });
+  if (deck == nullptr) return refuse_null("barchan_open: the deck's path");
+  return open({deck, "", {}}, settings, "", comm, sim);
 }
 
 int barchan_open_text(const char* toml, const char* settings, int comm, barchan_sim** sim) {
-  return open(toml, comm, settings, sim,
-              [&](const auto& overrides) { return barchan::parse_deck(toml, "deck", overrides); });
+  if (toml == nullptr) return refuse_null("barchan_open_text: the text");
+  return open({"", toml, {}}, settings, "", comm, sim);
 }
 
 int barchan_restore(const char* deck, const char* settings, const char* checkpoint, int comm,
                     barchan_sim** sim) {
-  return guarded([&] {
-    require(sim != nullptr && deck != nullptr && checkpoint != nullptr,
-            "barchan_restore: deck, checkpoint and simulation must not be NULL");
-    *sim = nullptr;
-    barchan::Communicator ranks = barchan::communicator_of(comm);
-    Settings chosen;
-    barchan::Deck read;
-    barchan::agree(ranks, [&] {
-      chosen = settings_of(settings);
-      read = barchan::read_deck(deck, chosen.deck);
-    });
-    const auto found = barchan::find_checkpoint(ranks, checkpoint);
-    if (!found)
-      throw barchan::InputError(std::string("there is no checkpoint in ") + checkpoint,
-                                "barchan_write_checkpoint writes one");
-    hand_out(
-        barchan::Simulation::restore(read.model, found->path, std::move(ranks), chosen.options),
-        sim);
-  });
+  if (deck == nullptr) return refuse_null("barchan_restore: the deck's path");
+  if (checkpoint == nullptr) return refuse_null("barchan_restore: the checkpoint's path");
+  return open({deck, "", {}}, settings, checkpoint, comm, sim);
 }
 
 int barchan_close(barchan_sim* sim) {

@@ -1,0 +1,316 @@
+"""Simulations, from decks, under MPI."""
+from __future__ import annotations
+
+import dataclasses
+import os
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+
+import numpy as np
+
+from . import _barchan
+from ._toml import deck_text, value_text
+
+__all__ = ["Measures", "Simulation", "Wall"]
+
+Vector = Union[Sequence[float], np.ndarray]
+
+
+@dataclasses.dataclass(frozen=True)
+class Measures:
+    """Sums over all ranks, exact whatever their order."""
+    kinetic: float  #: energy [J]
+    elastic: float  #: of contacts and bonds [J]
+    gravitational: float  #: [J]
+    momentum: Tuple[float, float, float]  #: [N·s]
+    contacts: int  #: touching pairs without a bond
+    bonds: int  #: whole ones
+    broken_bonds: int  #: since the start
+    max_overlap: float  #: [m]
+    max_overlap_share: float  #: of the smaller radius
+    max_speed: float  #: [m/s]
+
+
+class Wall:
+    """A wall of a simulation: where it is, what acts on it, and how it moves.
+
+    `point` [m], `velocity` [m/s]; `force` [N], `torque` about the point [N·m] and `work` [J] are those of the last
+    measure().
+    """
+
+    def __init__(self, simulation: "Simulation", name: str):
+        self._simulation, self.name = simulation, name
+
+    def __getattr__(self, name: str):
+        if name not in ("point", "velocity", "force", "torque", "work", "is_active"):
+            raise AttributeError(f"a wall has no {name!r}: point, velocity, force, torque, work, is_active")
+        value = self._simulation._inside.wall(self.name)[name]
+        return np.array(value) if isinstance(value, list) else value
+
+    def set_velocity(self, velocity: Vector) -> None:
+        """From the next step on [m/s]. Collective; the same on every rank."""
+        self._simulation._inside.set_wall_velocity(self.name, _three(velocity))
+
+    def set_load(self, load: float) -> None:
+        """Of a loaded plate, along its normal [N/m²]. Collective; the same on every rank."""
+        self._simulation._inside.set_wall_load(self.name, float(load))
+
+    def __repr__(self) -> str:
+        return f"<wall {self.name!r} at {self.point}>"
+
+
+class Simulation:
+    """A simulation on all ranks of a communicator.
+
+    Construction, run, advance_to, measure, digest, gather, scatter, add, remove, set_gravity, walls' set_..., save, load,
+    write_checkpoint and close are collective: all ranks call them in the same order. The rest is local. One thread at a time.
+
+    Views are of a moment: run(), load(), add(), remove(), scatter(), set_gravity() and clear_loads() end it. A view
+    then raises StaleView. An array that came from it stays safe: it keeps the values of its moment, and cannot be written.
+
+    Args:
+        deck: path of a deck, or a dict with the same tables and keys (docs/deck.md).
+        comm: a communicator of mpi4py, or its Fortran handle; None: all ranks.
+        set: keys of the deck with other values, as `--set`: {"time.step": 1e-5, "wall.lid.load": 500}.
+        threads: of this rank; 0: cores of the node over ranks on it.
+        exchange, vector, schedule: as the options of `barchan run`.
+        checkpoint: a folder to continue from; None: from the start.
+
+    Raises:
+        InputError: the same on every rank, for a deck that cannot run; with file, line and remedy.
+    """
+
+    def __init__(self, deck: Union[str, os.PathLike, Mapping[str, Any]], comm: Any = None, *,
+                 set: Optional[Mapping[str, Any]] = None, threads: int = 1, exchange: str = "auto",
+                 vector: str = "auto", schedule: str = "overlap",
+                 checkpoint: Union[str, os.PathLike, None] = None):
+        opening = _barchan.Opening()
+        if isinstance(deck, Mapping):
+            opening.text = deck_text(dict(deck)) or "\n"
+        else:
+            opening.path = os.fspath(deck)
+        if schedule not in ("overlap", "sequential"):
+            raise ValueError(f"schedule is 'overlap' or 'sequential', not {schedule!r}")
+        if threads < 0:
+            raise ValueError(f"{threads} threads: 1 or more, or 0 for the cores of the node over its ranks")
+        opening.overrides = [(key, value_text(value)) for key, value in (set or {}).items()]
+        opening.threads, opening.exchange, opening.vector, opening.schedule = threads, exchange, vector, schedule
+        opening.checkpoint = "" if checkpoint is None else os.fspath(checkpoint)
+        opening.comm = _handle_of(comm)
+        self._inside = _barchan.open(opening)
+
+    def __enter__(self) -> "Simulation":
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Ends the simulation; arrays of it keep their values. Collective."""
+        self._inside.close()
+
+    # ---- what it is, and when
+    @property
+    def time(self) -> float:
+        """[s]; positions are of this time, velocities half a step behind."""
+        return self._inside.info()["time"]
+
+    @property
+    def step(self) -> int:
+        return self._inside.info()["step"]
+
+    @property
+    def info(self) -> Dict[str, Any]:
+        """time, step, dt, stage, dimension, num_particles, num_owned, threads, exchange, walls, materials and so on."""
+        return self._inside.info()
+
+    @property
+    def num_particles(self) -> int:
+        """On all ranks, now."""
+        return self._inside.info()["num_particles"]
+
+    @property
+    def walls(self) -> Dict[str, Wall]:
+        """By name: `sim.walls["lid"].set_velocity([0, 0, -0.1])`."""
+        return {name: Wall(self, name) for name in self._inside.info()["walls"]}
+
+    def notes(self) -> List[str]:
+        """Events on this rank since the last call; rank 0 has those that all ranks know."""
+        return self._inside.take_notes()
+
+    # ---- time
+    def run(self, steps: int) -> int:
+        """Advances by so many steps; fewer when the last stage ends. Returns steps done.
+
+        Raises:
+            RunEnded: on every rank, between two steps: the state can be read, saved, or replaced by load().
+            RunError: perhaps on this rank only, while others wait: end all ranks.
+        """
+        return self._inside.run(steps)
+
+    def advance_to(self, time: float) -> int:
+        """Runs to the step nearest to `time` [s]. Returns steps done."""
+        return self._inside.advance_to(time)
+
+    def measure(self) -> Measures:
+        """Energies, contacts, overlap, momentum of all ranks; afterwards walls know their forces."""
+        return Measures(**{k: tuple(v) if isinstance(v, list) else v for k, v in self._inside.measure().items()})
+
+    def digest(self) -> str:
+        """Of the state of all ranks: sixteen digits, equal for equal states (docs/determinism.md)."""
+        return f"{self._inside.digest():016x}"
+
+    # ---- arrays
+    def owned(self) -> List[_barchan.Brick]:
+        """The particles of this rank, a view for each brick: ids, positions, velocities, surface_speeds, radii,
+        inverse_masses, densities, types to read, without a copy; forces and torques_by_radius to write in place."""
+        return self._inside.owned()
+
+    def set_loads(self, ids: Any, forces: Any, torques: Any = None) -> None:
+        """Sets loads on these particles of this rank; others keep theirs. They act in every step until they are
+        set again or cleared.
+
+        Args:
+            ids: (n); in the order of owned() it is fastest.
+            forces: (n, 3), in 2D also (n, 2) [N].
+            torques: (n, 3), in 2D also (n) about z [N·m]; None: zeros.
+        """
+        ids = np.asarray(ids, dtype=np.int64).ravel()
+        rows = _vectors(forces, len(ids), "forces")
+        turns = np.empty(0) if torques is None else _turns(torques, len(ids), "torques")
+        self._inside.set_loads(ids, rows, turns)
+
+    def clear_loads(self) -> None:
+        """No loads any more, on this rank."""
+        self._inside.clear_loads()
+
+    def gather(self, field: str) -> Optional[Tuple[np.ndarray, np.ndarray]]:
+        """A field of all particles: (ids, values) in order of ids on rank 0, None elsewhere. Collective.
+
+        Args:
+            field: position, velocity, angular_velocity, force, torque (n, 3); radius, mass, type (n).
+        """
+        return self._inside.gather(_field(field))
+
+    def scatter(self, field: str, ids: Any, values: Any) -> None:
+        """Sets velocity, angular_velocity, force or torque of any particles. Collective; the same lists on every rank."""
+        ids = np.asarray(ids, dtype=np.int64).ravel()
+        what = _field(field)
+        rows = _turns if field in ("angular_velocity", "torque") else _vectors
+        self._inside.scatter(what, ids, rows(values, len(ids), "values"))
+
+    # ---- changes in the course
+    def add(self, position: Any, radius: Any, *, velocity: Any = 0.0, omega: Any = 0.0,
+            material: Union[str, Any] = 0, density: Any = None, ids: Any = None) -> np.ndarray:
+        """Particles that come now. Collective; the same on every rank. Returns their ids.
+
+        Args:
+            position: (n, 3), in 2D also (n, 2) [m].
+            radius: one, or (n) [m]; no larger than the largest at the start.
+            velocity, omega: vectors [m/s, rad/s], half a step behind the position.
+            material: its name, or types from 0.
+            density: None: that of the material.
+            ids: None: the next ones that are free.
+        """
+        position = np.atleast_2d(np.asarray(position, dtype=float))
+        n = len(position)
+        if isinstance(material, str):
+            materials = self._inside.info()["materials"]
+            if material not in materials:
+                raise ValueError(f"no material is called {material!r}: there are {', '.join(materials)}")
+            material = materials.index(material)
+        types = np.broadcast_to(np.asarray(material, dtype=np.int64), n)
+        if density is None:
+            known = len(self._inside.info()["materials"])
+            if n and not 0 <= types.min() <= types.max() < known:
+                raise ValueError(f"types of materials are from 0 to {known - 1}")
+            density = np.array([self._inside.material_density(int(t)) for t in types])
+        if ids is None:
+            ids = self._inside.highest_id() + 1 + np.arange(n)
+        ids = np.asarray(ids, dtype=np.int64).ravel()
+        if len(ids) != n:
+            raise ValueError(f"{len(ids)} ids for {n} particles")
+        motion = np.hstack([_vectors(position, n, "position"), _vectors(velocity, n, "velocity"),
+                            _turns(omega, n, "omega")])
+        self._inside.add(ids, types, np.broadcast_to(np.asarray(radius, dtype=float), n),
+                         np.broadcast_to(np.asarray(density, dtype=float), n), motion)
+        return ids
+
+    def remove(self, ids: Any) -> None:
+        """Particles that go now, with contacts and bonds. Collective; the same on every rank."""
+        self._inside.remove(np.asarray(ids, dtype=np.int64).ravel())
+
+    def set_gravity(self, gravity: Vector) -> None:
+        """From the next step on [m/s²]. Collective; the same on every rank."""
+        self._inside.set_gravity(_three(gravity))
+
+    # ---- back and again
+    def save(self, state: Optional[_barchan.State] = None) -> _barchan.State:
+        """The present state, in memory; `state`: a former one whose memory is used again. Collective."""
+        state = _barchan.State() if state is None else state
+        self._inside.save(state)
+        return state
+
+    def load(self, state: _barchan.State) -> None:
+        """All is as it was when `state` was saved, to the bit. Collective."""
+        self._inside.load(state)
+
+    def write_checkpoint(self, folder: Union[str, os.PathLike]) -> None:
+        """Writes the present state to a folder; Simulation(deck, checkpoint=folder) continues. Collective."""
+        if not self._inside.write_checkpoint(os.fspath(folder)):
+            raise OSError(f"the checkpoint could not be written to {os.fspath(folder)}")
+
+    def __repr__(self) -> str:
+        what = self._inside.info()
+        return f"<barchan simulation {what['title']!r}: {what['num_particles']} particles, step {what['step']}>"
+
+
+def _handle_of(comm: Any) -> int:
+    if not _barchan.is_mpi_running():
+        if comm is not None and not isinstance(comm, int):
+            raise ValueError("MPI does not run: import mpi4py.MPI, which starts it")
+        _barchan.start_mpi()
+    if comm is None:
+        return _barchan.world()
+    if isinstance(comm, int):
+        return comm
+    if hasattr(comm, "py2f"):
+        return comm.py2f()
+    raise TypeError(f"comm is a communicator of mpi4py, its Fortran handle, or None, not {comm!r}")
+
+
+def _field(name: str) -> _barchan.Field:
+    fields = _barchan.Field.__members__
+    if name not in fields:
+        raise ValueError(f"there is no field {name!r}: {', '.join(fields)}")
+    return fields[name]
+
+
+def _three(v: Vector) -> List[float]:
+    v = np.asarray(v, dtype=float).ravel()
+    if len(v) not in (2, 3):
+        raise ValueError(f"a vector has 2 or 3 components, not {len(v)}")
+    return [float(v[0]), float(v[1]), float(v[2]) if len(v) == 3 else 0.0]
+
+
+def _vectors(values: Any, n: int, what: str) -> np.ndarray:
+    """(n, 3) from that, from (n, 2) with z = 0, or from one vector or number for all."""
+    values = np.asarray(values, dtype=float)
+    if values.ndim == 0 or values.shape in ((2,), (3,)):
+        if values.ndim == 0 and values != 0.0:
+            raise ValueError(f"{what}: a number for a vector")
+        values = np.broadcast_to(values, (n, 3 if values.ndim == 0 else len(values)))
+    if values.shape not in ((n, 2), (n, 3)):
+        raise ValueError(f"{what} of shape {values.shape} for {n} particles: ({n}, 3), in 2D also ({n}, 2)")
+    rows = np.zeros((n, 3))
+    rows[:, :values.shape[1]] = values
+    return rows
+
+
+def _turns(values: Any, n: int, what: str) -> np.ndarray:
+    """(n, 3) from that, or from (n): about z."""
+    values = np.asarray(values, dtype=float)
+    if values.ndim == 0 or (values.shape == (n,) and n not in (0, 3)) or values.shape == (n, 1):
+        rows = np.zeros((n, 3))
+        rows[:, 2] = values.reshape(-1) if values.ndim else values
+        return rows
+    return _vectors(values, n, what)

@@ -1,0 +1,138 @@
+// Fields of all particles, there and back: gather and scatter.
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include <fmt/format.h>
+
+#include <barchan/core/base/error.hpp>
+#include <barchan/tasks/agree.hpp>
+#include <barchan/tasks/engine.hpp>
+#include <barchan/tasks/load_rows.hpp>
+
+namespace barchan {
+namespace {
+
+/// One record of a gather.
+struct Row {
+  std::int64_t id = 0;
+  double values[3] = {};
+};
+
+template <int Dim>
+Row row_of(const ParticleStore<Dim>& store, std::int32_t i, ParticleField field) {
+  using F = ParticleField;
+  Row row{store.id[static_cast<std::size_t>(i)], {}};
+  const double* load =
+      store.external.empty()
+          ? nullptr
+          : store.external.data() + std::size_t{Layout<Dim>::kForce} * static_cast<std::size_t>(i);
+  const auto turn = [&](const double* from, double factor) {
+    for (int c = 0; c < kSpins<Dim>; ++c) row.values[place_of_turn<Dim>(c)] = from[c] * factor;
+  };
+  switch (field) {
+    case F::Position:
+      std::copy_n(store.x(i), Dim, row.values);
+      break;
+    case F::Velocity:
+      std::copy_n(store.v(i), Dim, row.values);
+      break;
+    case F::AngularVelocity:
+      for (int c = 0; c < kSpins<Dim>; ++c)
+        row.values[place_of_turn<Dim>(c)] = store.u(i)[c] / store.radius(i);
+      break;
+    case F::Force:
+      if (load != nullptr) std::copy_n(load, Dim, row.values);
+      break;
+    case F::Torque:
+      if (load != nullptr) turn(load + Layout<Dim>::kTorque, store.radius(i));
+      break;
+    case F::Radius:
+      row.values[0] = store.radius(i);
+      break;
+    case F::Mass: {
+      const double im = store.inverse_mass(i);
+      row.values[0] = im > 0.0 ? 1.0 / im : std::numeric_limits<double>::infinity();
+      break;
+    }
+    case F::Type:
+      row.values[0] = store.type[static_cast<std::size_t>(i)];
+      break;
+  }
+  return row;
+}
+
+template <int Dim>
+void put_value(ParticleStore<Dim>& store, std::int32_t row, ParticleField field,
+               const double* value) {
+  switch (field) {
+    case ParticleField::Velocity:
+      std::copy_n(value, Dim, store.v(row));
+      break;
+    case ParticleField::AngularVelocity:
+      for (int c = 0; c < kSpins<Dim>; ++c)
+        store.u(row)[c] = store.radius(row) * value[place_of_turn<Dim>(c)];
+      break;
+    case ParticleField::Force:
+      put_load(store, row, value, nullptr);
+      break;
+    default:
+      put_load(store, row, nullptr, value);
+  }
+}
+
+}  // namespace
+
+template <int Dim>
+Gathered Simulation::EngineOf<Dim>::gather(ParticleField field) {
+  std::vector<Row> mine;
+  mine.reserve(static_cast<std::size_t>(num_owned()));
+  for (const Lane<Dim>& lane : parts_.strip.lanes()) {
+    for (std::int32_t i = 0; i < lane.brick.store.num_owned; ++i)
+      mine.push_back(row_of(lane.brick.store, i, field));
+  }
+  std::vector<Row> all = communicator_.gather_all(std::span<const Row>(mine));
+  std::sort(all.begin(), all.end(), [](const Row& a, const Row& b) { return a.id < b.id; });
+  Gathered gathered;
+  for (const Row& row : all) {
+    gathered.ids.push_back(row.id);
+    gathered.values.insert(gathered.values.end(), row.values, row.values + width_of(field));
+  }
+  return gathered;
+}
+
+template <int Dim>
+void Simulation::EngineOf<Dim>::scatter(ParticleField field, std::span<const std::int64_t> ids,
+                                        std::span<const double> values) {
+  const bool is_motion =
+      field == ParticleField::Velocity || field == ParticleField::AngularVelocity;
+  const std::vector<ParticlePlace> found = find_all(ids, "scatter");
+  agree(communicator_, [&] {
+    for (std::size_t k = 0; k < ids.size() && is_motion; ++k) {
+      const ParticlePlace at = found[k];
+      if (at.lane >= 0 && parts_.strip.lane(at.lane).brick.store.inverse_mass(at.row) == 0.0)
+        throw InputError(fmt::format("Simulation::scatter: particle {} is fixed", ids[k]),
+                         "leave it out");
+    }
+  });
+  if (!is_motion) {
+    for (Lane<Dim>& lane : parts_.strip.lanes()) make_room(lane.brick.store);
+  }
+  for (std::size_t k = 0; k < ids.size(); ++k) {
+    if (found[k].lane >= 0)
+      put_value(parts_.strip.lane(found[k].lane).brick.store, found[k].row, field,
+                values.data() + 3 * k);
+  }
+  if (!is_motion) return;
+  schedule_.amend(step_, 0, lists_.top_speed());
+  renew_lists();  // ghosts get the new velocities, too
+}
+
+template Gathered Simulation::EngineOf<2>::gather(ParticleField);
+template void Simulation::EngineOf<2>::scatter(ParticleField, std::span<const std::int64_t>,
+                                               std::span<const double>);
+template Gathered Simulation::EngineOf<3>::gather(ParticleField);
+template void Simulation::EngineOf<3>::scatter(ParticleField, std::span<const std::int64_t>,
+                                               std::span<const double>);
+
+}  // namespace barchan

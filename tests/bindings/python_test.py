@@ -1,0 +1,177 @@
+#!/usr/bin/env python3
+"""The package barchan: the same bits as the command on any ranks, views that never dangle, errors in words.
+
+First argument: the command. The package is that of the build folder; skipped (77) where it was not built.
+"""
+import os
+import pathlib
+import subprocess
+import sys
+
+TREE = pathlib.Path(os.environ["BARCHAN_SOURCE"])
+PACKAGES = pathlib.Path(os.environ["BARCHAN_BUILD"]) / "python"
+DECK = str(TREE / "tests/install/abi.toml")
+sys.path.insert(0, str(PACKAGES))
+sys.path.insert(1, str(TREE / "examples/python"))
+
+
+def raises(kind, words, call):
+    try:
+        call()
+    except kind as error:
+        assert words in str(error), f"{words!r} in {str(error)!r}"
+        return
+    raise AssertionError(f"no {kind.__name__} about {words!r}")
+
+
+def drag(sim):
+    for brick in sim.owned():
+        brick.forces[:] = -2.0 * brick.velocities
+        brick.torques_by_radius[:] = -0.1 * brick.surface_speeds
+
+
+def course(barchan, comm, excursions, by_id=False):
+    """A digest, with excursions that are taken back, particles that go and come, walls and gravity that change."""
+    import numpy as np
+    with barchan.Simulation(DECK, comm, set={"particles.1.seed": 5}, threads=2) as sim:
+        state = None
+        for k in range(6):
+            if excursions:
+                state = sim.save(state)
+                sim.run(3 * k + 1)
+                drag(sim)
+                sim.set_gravity([0, 5])
+                sim.load(state)
+            if by_id:
+                for brick in sim.owned():
+                    order = np.argsort(brick.ids)[::-1]
+                    radii = brick.radii[order]
+                    sim.set_loads(brick.ids[order], -2.0 * brick.velocities[order],
+                                  -0.1 * brick.surface_speeds[order] * radii)
+            else:
+                drag(sim)
+            sim.run(10)
+        sim.remove(range(1, 40, 3))
+        ids = sim.add([[0.5, 0.8], [2.5, 0.85]], 0.025, velocity=[1.0, 0.0], material="sand")
+        assert ids.tolist() == [sim.info["num_particles"] + 13 - 1, sim.info["num_particles"] + 13], ids
+        sim.walls["ceiling"].set_velocity([0.0, -0.5])
+        sim.set_gravity([0.0, -4.0])
+        sim.scatter("velocity", ids, [[0.0, -1.0], [0.0, 1.0]])
+        sim.run(40)
+        return sim.digest()
+
+
+def views(barchan):
+    import numpy as np
+    sim = barchan.Simulation(DECK, threads=1)
+    sim.run(5)
+    brick = sim.owned()[0]
+    x, f = brick.positions, brick.forces
+    assert x.shape == (len(brick), 2) and not x.flags.writeable and not x.flags.owndata
+    raises(ValueError, "read-only", lambda: x.__setitem__((0, 0), 1.0))
+    before, part = x.copy(), x[3:7, 0]
+    f[:] = [0.5, 0.25]
+    ids, forces = sim.gather("force")
+    assert np.array_equal(forces, np.tile([0.5, 0.25, 0.0], (len(ids), 1)))
+    sim.run(300)
+    raises(barchan.StaleView, "owned()", lambda: brick.positions)
+    raises(barchan.StaleView, "over", lambda: len(brick))
+    raises(ValueError, "read-only", lambda: f.__setitem__(0, 0.0))
+    assert np.array_equal(x, before) and np.array_equal(part, before[3:7, 0])
+    now = sim.owned()[0].velocities
+    kept = now.copy()
+    del sim  # arrays outlive their simulation
+    assert np.array_equal(now, kept)
+
+
+def wrong_calls(barchan):
+    raises(barchan.InputError, "no.toml", lambda: barchan.Simulation("no.toml"))
+    raises(barchan.InputError, "stepp", lambda: barchan.Simulation(DECK, set={"time.stepp": 1}))
+    raises(ValueError, "schedule", lambda: barchan.Simulation(DECK, schedule="late"))
+    raises(TypeError, "communicator", lambda: barchan.Simulation(DECK, comm="world"))
+    raises(TypeError, "cannot hold", lambda: barchan.Simulation({"title": None}))
+    with barchan.Simulation(DECK) as sim:
+        raises(ValueError, "is not on rank 0", lambda: sim.set_loads([10**6], [[0, 0]]))
+        raises(ValueError, "shape", lambda: sim.set_loads([1, 2, 4], [[0, 0]]))
+        raises(barchan.InputError, "no particle", lambda: sim.remove([10**6]))
+        raises(ValueError, "no field 'mas'", lambda: sim.gather("mas"))
+        raises(ValueError, "no material", lambda: sim.add([0, 0], 0.1, material="gold"))
+        raises(ValueError, "types of materials", lambda: sim.add([0, 0], 0.1, material=7))
+        raises(barchan.InputError, "into wall 'floor'", lambda: sim.add([1.0, 0.001], 0.02))
+        raises(KeyError, "lid", lambda: sim.walls["lid"])
+        raises(barchan.InputError, "not loaded", lambda: sim.walls["floor"].set_load(1.0))
+        raises(RuntimeError, "empty", lambda: sim.load(barchan.State()))
+        raises(ValueError, "-1 steps", lambda: sim.run(-1))
+        assert sim.measure().kinetic == 0.0
+        assert "disks in a box" in repr(sim) and "floor" in repr(sim.walls["floor"])
+    raises(RuntimeError, "closed", lambda: sim.run(1))
+
+
+def from_dicts_and_files(barchan, command):
+    """A deck as a dict gives the bits of the command; its folder can be read; a checkpoint continues."""
+    import tomllib
+    import numpy as np
+    with open(DECK, "rb") as file:
+        deck = tomllib.load(file)
+    with barchan.Simulation(deck, set={"time.end": 0.04}) as sim:
+        sim.run(100)
+        sim.write_checkpoint("checkpoints")
+        sim.run(100)
+        digest, end = sim.digest(), sim.gather("position")
+    subprocess.run([command, "run", DECK, "--quiet", "--out", "run.out", "--force", "--set", "time.end=0.04"], check=True)
+    run = barchan.read("run.out")
+    assert run.figures["state_digest"] == digest
+    assert run.series["step"].dtype == np.int64 and run.series["step"][-1] == 200
+    last = run.snapshot()
+    assert np.array_equal(last["id"], end[0]) and np.array_equal(last["position"], end[1])
+    raises(LookupError, "no snapshot of step 7", lambda: run.snapshot(7))
+    raises(FileNotFoundError, "no folder", lambda: barchan.read("none.out"))
+    with barchan.Simulation(deck, set={"time.end": 0.04}, checkpoint="checkpoints") as sim:
+        assert sim.step == 100
+        sim.advance_to(0.04)
+        assert sim.digest() == digest
+
+
+def inner(kind):
+    import barchan
+    if kind == "world":
+        print("digest", course(barchan, None, excursions=True))
+        return
+    try:
+        from mpi4py import MPI
+    except ImportError:
+        print("digest none")
+        return
+    half = MPI.COMM_WORLD.Split(MPI.COMM_WORLD.rank // 2, MPI.COMM_WORLD.rank)  # two simulations side by side
+    print("digest", course(barchan, half, excursions=True, by_id=True))
+
+
+def main():
+    if len(sys.argv) > 2:
+        return inner(sys.argv[2])
+    if not list((PACKAGES / "barchan").glob("_barchan*.so")):
+        print("the package was not built (Debian: pybind11-dev, python3-dev)")
+        return 77
+    try:
+        import numpy  # noqa: F401
+    except ImportError:
+        print("no NumPy (Debian: python3-numpy)")
+        return 77
+    found = {}
+    for ranks, kind in ((2, "world"), (3, "mpi4py")):  # before this process starts MPI, which children would inherit
+        out = subprocess.run(["mpirun", "-n", str(ranks), sys.executable, __file__, sys.argv[1], kind],
+                             check=True, stdout=subprocess.PIPE, text=True).stdout
+        found[kind] = set(out.split()) - {"digest", "none"}
+    import barchan
+    expected = course(barchan, None, excursions=False)
+    assert found["world"] == {expected} and found["mpi4py"] <= {expected}, f"{found}, and {expected} on one rank"
+    views(barchan)
+    wrong_calls(barchan)
+    from_dicts_and_files(barchan, sys.argv[1])
+    help_text = barchan.Simulation.__doc__ + barchan.Simulation.run.__doc__
+    assert "RunEnded" in help_text and "InputError" in help_text
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
