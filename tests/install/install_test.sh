@@ -46,6 +46,8 @@ done; done | sort -u)
 [[ $digests =~ ^[0-9a-f]{16}$ ]] || { printf 'not one digest from C, whatever flags and ranks:\n%s\n' "$digests"; exit 1; }
 cc -Wall -Wextra -Werror "$coupling/sink.c" -o sink "${flags[@]}"
 mpirun -n 2 ./sink "$coupling/fluid.toml"
+cc -O2 -std=c99 -Wall -Wextra -Werror -pedantic "$coupling/fluidised_bed.c" -o fluidised_bed "${flags[@]}"
+mpirun -n 2 ./fluidised_bed "$coupling/bed.toml" implicit
 if command -v mpifort > /dev/null && command -v gfortran > /dev/null; then
   mpifort "$coupling/sink.f90" -o sink_fortran "${flags[@]}"
   mpirun -n 2 ./sink_fortran "$coupling/fluid.toml"

@@ -1,12 +1,14 @@
 // What the scripts beside this file run in the test suite: a step graph with contacts, bonds that
-// break, a loaded plate and rebuilds, checkpoints written behind it, and a restart; in 2D and 3D. A
-// sanitizer watches, so little is compared.
+// break, a loaded plate and rebuilds, checkpoints written behind it, a restart, and what a library's
+// caller does; in 2D and 3D. A sanitizer watches, so little is compared.
 #include <mpi.h>
 
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <barchan/core/base/error.hpp>
 #include <barchan/tasks/checkpoint_load.hpp>
@@ -43,10 +45,44 @@ std::uint64_t in_parts(const test::Scenario& s, const RunOptions& options, std::
   return sim.digest();
 }
 
+/// The same with excursions that are taken back, in which a caller does what it may.
+std::uint64_t with_excursions(const test::Scenario& s, const RunOptions& options,
+                              std::int64_t steps) {
+  Simulation sim(s.model, s.set, MPI_COMM_WORLD, options);
+  State state;
+  for (int k = 1; k <= 4; ++k) {
+    sim.save(state);
+    sim.run(9 * k);
+    for (const LoadView& loads : sim.loads()) {
+      for (std::size_t i = 0; i < loads.size(); ++i) loads.set(i, Vec3(0.1, 0.2, 0.0));
+    }
+    const auto views = sim.owned();
+    sim.set_loads({views[0].ids(), std::vector<double>(3 * views[0].size(), 0.1), {}});
+    sim.set_gravity(Vec3(0.0, -2.0 * k, 0.0));
+    const std::vector<std::int64_t> one{s.set.particles[0].id};
+    sim.scatter(ParticleField::Velocity, one, std::vector<double>(3, 0.0));
+    sim.remove(one);
+    sim.run(5);
+    const auto arrays = sim.release_arrays();
+    sim.run(5);
+    try {
+      sim.add(std::span(s.set.particles.data(), 1));
+      sim.run(5);
+    } catch (const InputError&) {  // there is another one by now
+    }
+    sim.load(state);
+    sim.run(steps / 4);
+  }
+  return sim.digest();
+}
+
 bool is_same(const test::Scenario& s, const RunOptions& options, std::int64_t steps) {
-  const bool same = whole(s, options, steps) == in_parts(s, options, steps);
+  const std::uint64_t expected = whole(s, options, steps);
+  const bool same =
+      expected == in_parts(s, options, steps) && expected == with_excursions(s, options, steps);
   MPI_Barrier(MPI_COMM_WORLD);
-  if (!same) std::fprintf(stderr, "%s: another digest after a restart\n", s.name.c_str());
+  if (!same)
+    std::fprintf(stderr, "%s: another digest after a restart or an excursion\n", s.name.c_str());
   return same;
 }
 
