@@ -8,6 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include <barchan/app/options.hpp>
+#include <barchan/app/verdict.hpp>
 #include <barchan/core/base/nearest.hpp>
 #include <barchan/tasks/results/run_summary.hpp>
 #include <barchan/tasks/simulation.hpp>
@@ -205,7 +206,8 @@ CommandKind kind_of(const CLI::App& root) {
       {"convert", CommandKind::Convert}, {"sweep", CommandKind::Sweep},
       {"table", CommandKind::Table},     {"compare", CommandKind::Compare},
       {"report", CommandKind::Report}};
-  return kKinds.at(root.get_subcommands().front()->get_name());
+  const auto found = kKinds.find(root.get_subcommands().front()->get_name());
+  return found == kKinds.end() ? CommandKind::Text : found->second;
 }
 
 }  // namespace
@@ -222,6 +224,8 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   add_probe(root, line.probe);
   add_others(root, line);
   add_experiments(root, line);
+  TextWords texts;
+  add_texts(root, texts);
   for (CLI::App* command : root.get_subcommands({}))
     command->set_version_flag("--version", "barchan " + version());
   try {
@@ -237,6 +241,8 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
     return line;
   }
   line.kind = kind_of(root);
+  if (line.kind == CommandKind::Text)
+    line.status = with_verdict(nullptr, [&] { line.text = text_of(root, texts); });
   if (words.schedule == "sequential") line.run.options.schedule = Schedule::Sequential;
   if (words.progress == "thread") line.run.options.progress = Progress::Thread;
   if (!words.search.empty())

@@ -28,4 +28,12 @@ void add_settings(CLI::App& command, std::vector<std::string>& settings);
 /// The commands that start runs, compare them and show them.
 void add_experiments(CLI::App& root, CommandLine& line);
 
+/// The commands that print what other programs read about this one.
+struct TextWords {
+  std::string shell, page, pages;
+};
+void add_texts(CLI::App& root, TextWords& words);
+/// What they print. Errors: InputError, RunError.
+[[nodiscard]] std::string text_of(const CLI::App& root, const TextWords& words);
+
 }  // namespace barchan::app

@@ -7,7 +7,8 @@ rm -rf "$work"/staged "$work"/installed "$work"/embed "$work"/embed_build
 
 cmake --install "$BARCHAN_BUILD" --prefix "$work/staged" > install.log
 mv staged installed
-for path in bin/barchan bin/barchan-netlab libexec/barchan/netlab/netlab_forwarder \
+for path in bin/barchan bin/barchan-netlab libexec/barchan/netlab/netlab_forwarder share/man/man1/barchan-run.1 \
+  share/barchan/deck.schema.json \
   include/barchan/core/base/vec.hpp share/barchan/examples/embed/CMakeLists.txt; do
   [[ -e installed/$path ]] || { echo "not installed: $path"; exit 1; }
 done
