@@ -25,6 +25,7 @@ void run_local(const CommandLine& line) {
   if (line.kind == CommandKind::Sweep) return sweep(line.sweep);
   if (line.kind == CommandKind::Table) return print_runs(line.table);
   if (line.kind == CommandKind::Compare) return compare(line.compare);
+  if (line.kind == CommandKind::Watch) return watch(line.watch);
   if (line.kind == CommandKind::Report) return report(line.report);
   convert(line.convert);
 }

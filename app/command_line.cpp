@@ -205,7 +205,7 @@ CommandKind kind_of(const CLI::App& root) {
       {"info", CommandKind::Info},       {"probe", CommandKind::Probe},
       {"convert", CommandKind::Convert}, {"sweep", CommandKind::Sweep},
       {"table", CommandKind::Table},     {"compare", CommandKind::Compare},
-      {"report", CommandKind::Report}};
+      {"report", CommandKind::Report},   {"watch", CommandKind::Watch}};
   const auto found = kKinds.find(root.get_subcommands().front()->get_name());
   return found == kKinds.end() ? CommandKind::Text : found->second;
 }

@@ -14,7 +14,19 @@ inline constexpr int kDone = 0;
 inline constexpr int kFailed = 1;
 inline constexpr int kWrongInput = 2;
 
-enum class CommandKind { Text, Run, Check, Info, Probe, Convert, Sweep, Table, Compare, Report };
+enum class CommandKind {
+  Text,
+  Run,
+  Check,
+  Info,
+  Probe,
+  Convert,
+  Sweep,
+  Table,
+  Compare,
+  Report,
+  Watch
+};
 
 struct RunArguments {
   std::string deck;
@@ -84,6 +96,12 @@ struct ReportArguments {
   std::optional<std::pair<std::int64_t, std::int64_t>> steps;  ///< of the timeline
 };
 
+struct WatchArguments {
+  std::string path;
+  double interval = 1.0;  ///< [s]
+  bool once = false;
+};
+
 /// What the user asked for.
 struct CommandLine {
   CommandKind kind = CommandKind::Text;
@@ -98,6 +116,7 @@ struct CommandLine {
   TableArguments table;
   CompareArguments compare;
   ReportArguments report;
+  WatchArguments watch;
 };
 
 /// Never throws: what is wrong becomes a text with status 2.

@@ -33,4 +33,8 @@ void compare(const CompareArguments& arguments);
 /// Errors: InputError.
 void report(const ReportArguments& arguments);
 
+/// `barchan watch`: how far a run is, until it ends. Without MPI.
+/// Errors: InputError; RunError when the run died.
+void watch(const WatchArguments& arguments);
+
 }  // namespace barchan::app

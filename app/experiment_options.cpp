@@ -187,6 +187,19 @@ void add_report(CLI::App& root, ReportArguments& report) {
   add_settings(command, report.settings);
 }
 
+void add_watch(CLI::App& root, WatchArguments& watch) {
+  CLI::App& command = *root.add_subcommand(
+      "watch", "Show how far a run is: step, time left, rate, hidden communication, energies");
+  command.add_option("folder", watch.path, "Folder of the run")
+      ->required()
+      ->type_name("RUN")
+      ->check(not_empty());
+  command.add_option("--interval", watch.interval, "Seconds between looks; default: 1")
+      ->type_name("T")
+      ->check(CLI::Range(0.1, 3600.0));
+  command.add_flag("--once", watch.once, "Look once, and end");
+}
+
 }  // namespace
 
 void add_experiments(CLI::App& root, CommandLine& line) {
@@ -194,6 +207,7 @@ void add_experiments(CLI::App& root, CommandLine& line) {
   add_table(root, line.table);
   add_compare(root, line.compare);
   add_report(root, line.report);
+  add_watch(root, line.watch);
 }
 
 }  // namespace barchan::app

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include <barchan/core/base/clock.hpp>
 #include <barchan/tasks/simulation.hpp>
@@ -11,7 +12,11 @@ namespace barchan::app {
 /// second, else a line every ten seconds. Rank 0 prints; times and hidden share are its own.
 class Progress {
  public:
-  Progress(const Simulation& simulation, bool is_quiet);
+  /// @param file  kept up to date for `barchan watch`, also by a quiet run, and removed at the end
+  Progress(const Simulation& simulation, bool is_quiet, std::string file);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
 
   /// How many steps to run until the next update() should be; the same on every rank. Collective.
   [[nodiscard]] std::int64_t most_steps();
@@ -20,8 +25,12 @@ class Progress {
 
  private:
   void print(double now);
+  void write(double now);
+  [[nodiscard]] double seconds_left(double now) const;
 
   const Simulation& simulation_;
+  std::string file_;
+  double last_write_ = 0.0;
   bool is_silent_;    ///< all ranks alike
   bool is_terminal_;  ///< rank 0 knows
   double interval_;   ///< [s]

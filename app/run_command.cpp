@@ -167,7 +167,7 @@ void run_deck(const Communicator& world, const RunArguments& arguments) {
   if (!recorded) simulation.keep_checkpoints(folder.file("checkpoints"), model.checkpoint);
   loaded.particles = {};
 
-  Progress progress(simulation, arguments.quiet);
+  Progress progress(simulation, arguments.quiet, folder.file("progress.json"));
   advance(simulation, results, folder, progress);
   const bool interrupted = simulation.step() < model.time.num_steps && !simulation.is_over();
   if (!recorded) save_last(simulation, results, progress, interrupted);

@@ -4,6 +4,7 @@
 
 #include <barchan/app/commands.hpp>
 #include <barchan/app/experiments/comparison.hpp>
+#include <barchan/app/experiments/run_table.hpp>
 #include <barchan/app/readable.hpp>
 
 namespace barchan::app {
@@ -39,8 +40,8 @@ void print_pairs(const std::vector<PointPair>& pairs) {
     for (const std::string& axis : axes) row.push_back(value_of(pair.point, axis));
     row.push_back(fmt::format("{}, {}", pair.a.size(), pair.b.size()));
     const double a = median(steps_of(pair.a)), b = median(steps_of(pair.b));
-    row.push_back(fmt::format("{:#.4g}", a));
-    row.push_back(fmt::format("{:#.4g}", b));
+    row.push_back(microseconds(a));
+    row.push_back(microseconds(b));
     row.push_back(change(1.0, pair.ratio.value));
     row.push_back(bounds(pair.ratio));
     row.push_back(pair.verdict());
@@ -55,8 +56,7 @@ void print_pairs(const std::vector<PointPair>& pairs) {
 void print_parts(const PointPair& pair) {
   Rows rows{{"[µs a step]", "A", "B", "B to A"}};
   for (const PartTimes& part : parts_of(pair))
-    rows.push_back({part.part, fmt::format("{:.4g}", part.a), fmt::format("{:.4g}", part.b),
-                    change(part.a, part.b)});
+    rows.push_back({part.part, microseconds(part.a), microseconds(part.b), change(part.a, part.b)});
   const auto hidden = [](const std::vector<const Measurement*>& runs) {
     return median(figures_of(runs, [](const Measurement& m) { return m.hidden(); }));
   };

@@ -96,6 +96,10 @@ RunTable tabulate(const Experiment& experiment, const std::string& against) {
   return table;
 }
 
+std::string microseconds(double time) {
+  return time < 1e4 ? fmt::format("{:#.4g}", time) : grouped(static_cast<std::int64_t>(time + 0.5));
+}
+
 std::vector<std::vector<std::string>> cells_of(const RunTable& table) {
   std::vector<std::vector<std::string>> cells{table.axes};
   if (table.axes.empty()) cells.front().emplace_back("point");
@@ -108,10 +112,9 @@ std::vector<std::vector<std::string>> cells_of(const RunTable& table) {
     if (table.axes.empty()) line.emplace_back("the only one");
     const std::string ratio = row.ratio > 0.0 ? fmt::format("{:.3f}", row.ratio) : "–";
     for (const std::string& text :
-         {std::to_string(row.runs.size()), fmt::format("{:#.4g}", row.step), percent(row.spread),
-          ratio, fmt::format("{:.4g}", row.work), fmt::format("{:.4g}", row.in_flight),
-          fmt::format("{:.3g}", row.exposed), percent(row.hidden),
-          fmt::format("{:.2f}", row.others)})
+         {std::to_string(row.runs.size()), microseconds(row.step), percent(row.spread), ratio,
+          microseconds(row.work), microseconds(row.in_flight), microseconds(row.exposed),
+          percent(row.hidden), fmt::format("{:.2f}", row.others)})
       line.push_back(text);
     cells.push_back(line);
   }

@@ -37,6 +37,9 @@ struct RunTable {
 /// Rows of cells with a head: the axes, then numbers as people read them.
 [[nodiscard]] std::vector<std::vector<std::string>> cells_of(const RunTable& table);
 
+/// A time as people read it: four digits, and all of whole microseconds.
+[[nodiscard]] std::string microseconds(double time);
+
 /// The numbers of a run.
 [[nodiscard]] nlohmann::ordered_json json_of(const Measurement& run);
 [[nodiscard]] nlohmann::ordered_json json_of(const RunTable& table);

@@ -28,12 +28,13 @@ constexpr std::size_t kHead = 4096;  // bytes of a file that are looked at
 struct Result {
   std::string_view name, beginning;
 };
-constexpr std::array<Result, 7> kResults{
+constexpr std::array<Result, 8> kResults{
     {{"run.json", "{\n"},
      {"series.csv", "step,time,kinetic_energy,contacts,max_overlap"},
      {"picture.png", "\x89PNG\r\n\x1a\n"},
      {"trace.json", "{\"displayTimeUnit\":\"ns\",\"traceEvents\":["},
      {"log.txt", "barchan "},
+     {"progress.json", "{\"step\":"},
      {"report.html", "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"},
      {"left_domain.csv", "step,id,x,y"}}};
 constexpr std::string_view kVtk = "<?xml version=\"1.0\"?>\n<VTKFile type=\"";

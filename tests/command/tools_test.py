@@ -6,7 +6,7 @@ from _helper import DECK, expect, finish, fresh, messages, run, write
 
 def check_help():
     for arguments in (["--help"], ["run", "--help"], ["check", "--help"], ["info", "--help"], ["convert", "--help"],
-                      ["sweep", "--help"], ["report", "--help"], ["table", "--help"], ["compare", "--help"]):
+                      ["sweep", "--help"], ["report", "--help"], ["watch", "--help"], ["table", "--help"], ["compare", "--help"]):
         done = run(*arguments)
         expect(done.returncode == 0 and "Usage" in done.stdout, f"{arguments}: {done}")
     for arguments in (["--version"], ["run", "--version"], ["convert", "--version"]):
