@@ -1,6 +1,6 @@
 // What the scripts beside this file run in the test suite: a step graph with contacts, bonds that
-// break, a loaded plate and rebuilds, checkpoints written behind it, a restart, and what a library's
-// caller does; in 2D and 3D. A sanitizer watches, so little is compared.
+// break, a loaded plate and rebuilds, checkpoints written behind it, a restart, and a caller of the
+// library; in 2D and 3D. A sanitizer watches, so little is compared.
 #include <mpi.h>
 
 #include <cstdio>
