@@ -139,13 +139,15 @@ void Simulation::EngineOf<Dim>::set_loads(const Loads& loads) {
           loads.ids[k], communicator_.rank()));
   }
   for (Lane<Dim>& lane : parts_.strip.lanes()) make_room(lane.brick.store);
-  const double *force = loads.forces.data(), *torque = loads.torques.data();
+  constexpr double kNone[3] = {};
+  const double *force = loads.forces.data(),
+               *torque = loads.torques.empty() ? kNone : loads.torques.data();
+  const int stride = loads.torques.empty() ? 0 : 3;
   for (const auto& [first, length] : runs) {
-    constexpr double kNone[3] = {};
     ParticleStore<Dim>& store = parts_.strip.lane(first.lane).brick.store;
     for (std::int32_t i = 0; i < static_cast<std::int32_t>(length); ++i, force += 3) {
-      put_load(store, first.row + i, force, torque == nullptr ? kNone : torque);
-      if (torque != nullptr) torque += 3;
+      put_load(store, first.row + i, force, torque);
+      torque += stride;
     }
   }
 }

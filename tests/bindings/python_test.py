@@ -72,6 +72,8 @@ def views(barchan):
     before, part = x.copy(), x[3:7, 0]
     f[:] = [0.5, 0.25]
     ids, forces = sim.gather("force")
+    sim.set_loads(brick.ids, np.tile([0.5, 0.25], (len(brick), 1)))
+    assert not sim.gather("torque")[1].any()
     assert np.array_equal(forces, np.tile([0.5, 0.25, 0.0], (len(ids), 1)))
     sim.run(300)
     raises(barchan.StaleView, "owned()", lambda: brick.positions)
