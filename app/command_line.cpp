@@ -118,7 +118,14 @@ void add_probe(CLI::App& root, ProbeArguments& probe) {
                   "For each measurement, five of which make a line; default: 0.05")
       ->type_name("T")
       ->check(CLI::Range(1e-4, 60.0));
-  command.add_flag("--json", probe.json, "Print JSON instead of tables");
+  command
+      .add_option("--repeat", probe.options.repetitions,
+                  "Repetitions of each measurement, instead of --seconds")
+      ->type_name("N")
+      ->transform(whole_number())
+      ->check(CLI::Range(1, 1 << 24));
+  auto* json = command.add_flag("--json", probe.json, "Print JSON instead of tables");
+  command.add_flag("--csv", probe.csv, "Print CSV instead of tables")->excludes(json);
 }
 
 void add_others(CLI::App& root, CommandLine& line) {

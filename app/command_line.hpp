@@ -49,7 +49,7 @@ struct CheckArguments {
 
 struct ProbeArguments {
   ProbeOptions options;
-  bool json = false;
+  bool json = false, csv = false;
 };
 
 struct ConvertArguments {

@@ -40,17 +40,17 @@ void print_head(const ProbeReport& r, int ranks) {
 }
 
 void print_rows(const ProbeReport& r) {
-  Rows rows{{"exchange", "message", "half trip [µs]", "both ways [µs]", "CPU [µs]", "overlap",
-             "availability"}};
+  Rows rows{{"exchange", "message", "half trip [µs]", "p99", "most", "both ways [µs]", "CPU [µs]",
+             "overlap", "availability"}};
   for (const ProbeRow& row : r.plain_put) {
     rows.push_back({row.exchange, size_of(row.bytes), microseconds(row.cost.half_round_trip), "-",
-                    "-", "-", "-"});
+                    "-", "-", "-", "-", "-"});
   }
   for (const ProbeRow& row : r.rows) {
     const ExchangeCost& c = row.cost;
     rows.push_back({row.exchange, size_of(row.bytes), microseconds(c.half_round_trip),
-                    microseconds(c.both_ways), microseconds(c.cpu), percent(c.overlap),
-                    percent(c.availability)});
+                    microseconds(c.half_p99), microseconds(c.half_most), microseconds(c.both_ways),
+                    microseconds(c.cpu), percent(c.overlap), percent(c.availability)});
   }
   std::fputs("\n", stdout);
   std::fputs(table(rows).c_str(), stdout);
@@ -75,6 +75,8 @@ Json row_of(const ProbeRow& row) {
   return {{"exchange", row.exchange},
           {"bytes", row.bytes},
           {"half_round_trip_seconds", row.cost.half_round_trip},
+          {"half_round_trip_p99_seconds", row.cost.half_p99},
+          {"half_round_trip_most_seconds", row.cost.half_most},
           {"both_ways_seconds", row.cost.both_ways},
           {"cpu_seconds", row.cost.cpu},
           {"overlap", row.cost.overlap},
@@ -98,6 +100,25 @@ void print_json(const ProbeReport& r, int ranks) {
   std::fflush(stdout);
 }
 
+void print_csv(const ProbeReport& r) {
+  std::puts(
+      "exchange,bytes,half_round_trip_us,half_round_trip_p99_us,half_round_trip_most_us,both_ways_"
+      "us,"
+      "cpu_us,overlap,availability");
+  for (const ProbeRow& row : r.plain_put) {
+    std::puts(fmt::format("plain put,{},{:.4f},,,,,,", row.bytes, 1e6 * row.cost.half_round_trip)
+                  .c_str());
+  }
+  for (const ProbeRow& row : r.rows) {
+    const ExchangeCost& c = row.cost;
+    std::puts(fmt::format("{},{},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f},{:.4f}", row.exchange,
+                          row.bytes, 1e6 * c.half_round_trip, 1e6 * c.half_p99, 1e6 * c.half_most,
+                          1e6 * c.both_ways, 1e6 * c.cpu, c.overlap, c.availability)
+                  .c_str());
+  }
+  std::fflush(stdout);
+}
+
 /// What does not work among all is a line of the answer; what was asked for by name is a refusal.
 bool is_refused(const ProbeReport& r, const ProbeOptions& options) {
   return !r.obstacles.empty() && (!options.exchanges.empty() || r.rows.empty());
@@ -117,6 +138,8 @@ void probe(const Communicator& world, const ProbeArguments& arguments) {
   if (world.is_root()) {
     if (arguments.json)
       print_json(report, world.size());
+    else if (arguments.csv)
+      print_csv(report);
     else
       print_table(report, world.size(), !refused);
   }

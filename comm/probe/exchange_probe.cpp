@@ -16,10 +16,17 @@ constexpr int kNumPieces = 8;
 // Ranks that have been apart meet in the first steps, which do not count.
 constexpr int kNumFirst = 2, kLeastRepetitions = 3, kMostRepetitions = 1000;
 
+/// The value that this share of all is at most.
+double percentile(std::vector<double>& values, double share) {
+  const auto rank = static_cast<std::size_t>(share * static_cast<double>(values.size()));
+  const auto place =
+      values.begin() + static_cast<std::ptrdiff_t>(std::min(rank, values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
 double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return percentile(values, 0.5);
 }
 
 SpinWork& work_of_this_thread() {
@@ -51,6 +58,10 @@ double ExchangeProbe::both_ways() {
   return both_ways_;
 }
 
+ExchangeProbe::Spread ExchangeProbe::spread_of(std::vector<double>& times) {
+  return {median(times), percentile(times, 0.99), percentile(times, 1.0)};
+}
+
 // All ranks repeat equally often: blocks that grow, and after each a look whether the slowest has
 // time left. A machine that is busy with other work so takes longer for fewer repetitions, not for
 // all of them.
@@ -58,6 +69,9 @@ template <class Once>
 void ExchangeProbe::repeat(Once&& once) {
   const std::int64_t begin = now_ns();
   int num_done = 0;
+  for (; repetitions_ > 0 && num_done < kNumFirst + repetitions_; ++num_done)
+    once(num_done >= kNumFirst);
+  if (repetitions_ > 0) return;
   for (int block = kNumFirst + kLeastRepetitions; num_done < kMostRepetitions; block *= 2) {
     for (int n = 0; n < block; ++n) once(num_done + n >= kNumFirst);
     num_done += block;
@@ -126,7 +140,8 @@ ExchangeProbe::Step ExchangeProbe::median_step(const WorkPattern& work, bool pol
     wholes.push_back(one.whole);
     calls.push_back(one.in_calls);
   });
-  return {median(wholes), median(calls)};
+  wholes_ = spread_of(wholes);
+  return {wholes_.median, median(calls)};
 }
 
 double ExchangeProbe::median_work(const WorkPattern& work) {
@@ -160,7 +175,7 @@ double ExchangeProbe::bounce(Side side, bool begins) {
 }
 
 // Pairs of ranks (parity, parity + 1), (parity + 2, parity + 3), … at the same time.
-double ExchangeProbe::ping_pong(int parity) {
+ExchangeProbe::Spread ExchangeProbe::ping_pong(int parity) {
   const bool begins = communicator_.rank() % 2 == parity;
   const Side side = begins ? Side::Right : Side::Left;
   const bool is_in_pair =
@@ -172,20 +187,35 @@ double ExchangeProbe::ping_pong(int parity) {
     const double half = bounce(side, begins);
     if (counts) times.push_back(half);
   });
-  return begins && is_in_pair ? median(times) : 0.0;
+  return begins && is_in_pair ? spread_of(times) : Spread{};
 }
 
 double ExchangeProbe::half_round_trip() {
-  if (!exchange_.allows_uneven_sides()) return both_ways();
-  double longest = ping_pong(0);
-  if (communicator_.size() > 2) longest = std::max(longest, ping_pong(1));
-  return slowest(longest);
+  return half_trips().median;
+}
+
+ExchangeProbe::Spread ExchangeProbe::half_trips() {
+  Spread longest;
+  if (!exchange_.allows_uneven_sides()) {
+    const double median = both_ways();
+    longest = {median, std::max(median, wholes_.p99), std::max(median, wholes_.most)};
+  } else {
+    for (int parity = 0; parity < std::min(2, communicator_.size() - 1); ++parity) {
+      const Spread one = ping_pong(parity);
+      longest = {std::max(longest.median, one.median), std::max(longest.p99, one.p99),
+                 std::max(longest.most, one.most)};
+    }
+  }
+  return {slowest(longest.median), slowest(longest.p99), slowest(longest.most)};
 }
 
 ExchangeCost ExchangeProbe::measure() {
   ExchangeCost cost;
   cost.both_ways = both_ways();
-  cost.half_round_trip = half_round_trip();
+  const Spread half = half_trips();
+  cost.half_round_trip = half.median;
+  cost.half_p99 = half.p99;
+  cost.half_most = half.most;
   const WorkPattern same{both_ways_, kNumPieces};
   const Step overlapped = median_step(same, true);
   const double exposed_same = overlapped.whole - median_work(same);

@@ -22,6 +22,7 @@ void probe_sizes(const Communicator& communicator, Neighbours neighbours, const 
   const auto exchange = make_exchange(name, communicator, neighbours, first);
   for (const std::size_t bytes : options.sizes) {
     ExchangeProbe probe(communicator, neighbours, *exchange, bytes, options.budget_seconds);
+    probe.repeat_exactly(options.repetitions);
     report.rows.push_back({name, bytes, probe.measure()});
   }
 }

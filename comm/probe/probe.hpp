@@ -16,6 +16,8 @@ struct ExchangeCost {
   /// Between two neighbours, one after the other; for exchanges whose sides go together, both ways
   /// at once.
   double half_round_trip = 0.0;
+  double half_p99 = 0.0;      ///< of these trips, 99 in 100 are as short
+  double half_most = 0.0;     ///< the longest of them
   double both_ways = 0.0;     ///< all ranks send to all neighbours and take what comes; no work
   double cpu = 0.0;           ///< inside the exchange per step, waiting at the end left out
   double overlap = 0.0;       ///< OSU: share of both_ways that work of the same length covers
@@ -46,12 +48,20 @@ class ExchangeProbe {
   ExchangeProbe(const Communicator& communicator, Neighbours neighbours, Exchange& exchange,
                 std::size_t bytes, double budget_seconds);
 
+  /// So many repetitions for each measurement, instead of what the budget allows.
+  void repeat_exactly(int repetitions) { repetitions_ = repetitions; }
+
   [[nodiscard]] ExchangeCost measure();
   [[nodiscard]] double half_round_trip();
   /// What the exchange adds to a step with this work [s].
   [[nodiscard]] double exposed(const WorkPattern& work);
 
  private:
+  /// Times of many repetitions.
+  struct Spread {
+    double median = 0.0, p99 = 0.0, most = 0.0;
+  };
+  static Spread spread_of(std::vector<double>& times);
   struct Step {
     double whole = 0.0, in_calls = 0.0;
   };
@@ -60,7 +70,9 @@ class ExchangeProbe {
   double median_work(const WorkPattern& work);
   double both_ways();
   double bounce(Side side, bool begins);
-  double ping_pong(int parity);
+  Spread ping_pong(int parity);
+  /// Of half a round trip; @pre both_ways() was called
+  Spread half_trips();
   template <class Once>
   void repeat(Once&& once);
   [[nodiscard]] double slowest(double mine) const;
@@ -72,7 +84,9 @@ class ExchangeProbe {
   Exchange& exchange_;
   std::size_t bytes_;
   double budget_;
+  int repetitions_ = 0;     ///< 0: by the budget
   double both_ways_ = 0.0;  ///< 0: not yet measured
+  Spread wholes_;           ///< of the steps that were measured last
 };
 
 /// One line of a probe's table.
@@ -97,6 +111,7 @@ struct ProbeOptions {
   std::vector<std::string> exchanges;
   std::vector<std::size_t> sizes = {64, 256, 1 << 10, 1 << 12, 1 << 14, 1 << 16, 1 << 18, 1 << 20};
   double budget_seconds = 0.05;  ///< for each of the five measurements of a row
+  int repetitions = 0;           ///< of each instead; 0: by the budget
   ExchangeHooks hooks;
 };
 

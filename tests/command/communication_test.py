@@ -18,6 +18,14 @@ def check_probe():
     found = {row["exchange"] for row in report["exchanges"]} | {o["exchange"] for o in report["obstacles"]}
     expect({"put-flag", "put-inband", "get", "shared", "pscw", "fence", "isend", "sendrecv"} <= found, f"probe has {found}")
     expect(all(row["half_round_trip_seconds"] > 0 for row in report["exchanges"]), "a half round trip of nothing")
+    expect(all(row["half_round_trip_seconds"] <= row["half_round_trip_p99_seconds"] <= row["half_round_trip_most_seconds"]
+               for row in report["exchanges"]), f"percentiles: {report['exchanges']}")
+    done = run("probe", "--bytes", "64", "--repeat", "50", "--exchange", "isend,sendrecv", "--csv", ranks=2)
+    rows = [line.split(",") for line in done.stdout.splitlines()]
+    expect(done.returncode == 0 and [row[0] for row in rows[-2:]] == ["isend", "sendrecv"] and {len(row) for row in rows} == {9},
+           f"probe --csv: {done}")
+    done = run("probe", "--csv", "--json", ranks=2)
+    expect(done.returncode == 2, f"probe in two formats: {done}")
     done = run("probe")
     expect(done.returncode == 2 and len(messages(done)) == 1, f"probe on one rank: {done}")
     done = run("probe", "--bytes", "3000000000", ranks=2)
