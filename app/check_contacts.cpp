@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <barchan/app/readable.hpp>
+#include <barchan/core/model/contact_range.hpp>
 #include <barchan/core/model/mass.hpp>
 
 namespace barchan::app {
@@ -96,9 +97,10 @@ std::string describe(const ContactTable& contacts) {
   return with_law(contacts.law, [&]<class Law>(Law /*law*/) {
     std::string text = "linear springs and dashpots, friction";
     if (Law::kStiffens)
-      text = fmt::format("Hertz, {}, friction", contacts.tangential == Tangential::Mindlin
-                                                    ? "Mindlin by increments of force"
-                                                    : "Mindlin by displacement");
+      text =
+          fmt::format("{}, {}, friction", std::is_base_of_v<Jkr, Law> ? "JKR" : "Hertz",
+                      contacts.tangential == Tangential::Mindlin ? "Mindlin by increments of force"
+                                                                 : "Mindlin by displacement");
     constexpr const char* kAdhesion[] = {"", ", DMT adhesion", ", SJKR cohesion",
                                          ", SJKR2 cohesion"};
     text += kAdhesion[static_cast<int>(contacts.adhesion)];
@@ -116,6 +118,11 @@ void print_contacts(const LoadedDeck& loaded) {
       contacts.law, [&]<class Law>(Law /*law*/) { return rows_of<Law>(loaded, lossless); });
   std::printf("Contacts: %s%s\n%s", describe(contacts).c_str(),
               contacts.no_tension ? "" : "; normal forces may pull", table(rows).c_str());
+  double largest = 0.0;
+  for (const ParticleData& p : loaded.particles.particles) largest = std::max(largest, p.radius);
+  if (const double range = contact_range(contacts, largest); range > 0.0)
+    std::printf("  What touches holds up to %.3g m beyond touch, %.2g of the largest radius.\n",
+                range, range / largest);
   if (!lossless.empty())
     std::printf("  Warning: restitution 1, head-on collisions lose no energy: %s\n",
                 lossless.c_str());

@@ -55,13 +55,19 @@ void measure_pairs(const Brick<Dim>& brick, const PairList& list, const PairBloc
     const std::int32_t i = list.i[k], j = list.j[k];
     const double d2 = distance2<Dim>(box, store.x(i), store.x(j));
     const double reach = store.radius(i) + store.radius(j);
-    if (d2 >= reach * reach) return;
-    const double overlap = reach - std::sqrt(d2);
     double history[kMostHistory];
-    for (int c = 0; c < law.history.length; ++c) history[c] = numbers[c * kBatch];
+    bool is_held = false;
+    for (int c = 0; c < law.history.length; ++c) {
+      history[c] = numbers[c * kBatch];
+      is_held = is_held || history[c] != 0.0;
+    }
+    const bool touches = d2 < reach * reach;
+    if (!touches && !(is_held && brick.world->range > 0.0)) return;
+    const double overlap = reach - std::sqrt(d2);
     m.elastic.add(law.energy(laws.row(list.code[k]),
                              {overlap, store.inverse_radius(i) + store.inverse_radius(j), reach},
                              history));
+    if (!touches) return;
     m.max_overlap = std::max(m.max_overlap, overlap);
     m.max_overlap_share =
         std::max(m.max_overlap_share, overlap / std::min(store.radius(i), store.radius(j)));
@@ -80,11 +86,13 @@ void measure_wall_contacts(const Brick<Dim>& brick, Measures& m) {
     const double overlap =
         store.radius(c.row) -
         world.wall_shapes[w].foot(world.walls[w].point, c.image, store.x(c.row)).distance;
-    if (overlap <= 0.0 || !brick.walls.is_felt(store, world.wall_view(), k)) continue;
+    const bool holds = overlap > 0.0 || (world.range > 0.0 && has_history(c));
+    if (!holds || !brick.walls.is_felt(store, world.wall_view(), k)) continue;
     const double* row = world.laws.row(
         world.laws.code(world.wall_specs[w].material, store.type[static_cast<std::size_t>(c.row)]));
     m.elastic.add(world.laws.law().template in<Dim>().energy(
         row, {overlap, store.inverse_radius(c.row), store.radius(c.row)}, c.history));
+    if (overlap <= 0.0) continue;
     m.max_overlap = std::max(m.max_overlap, overlap);
     m.max_overlap_share = std::max(m.max_overlap_share, overlap / store.radius(c.row));
   }

@@ -51,7 +51,7 @@ void put_contacts(ByteWriter& out, const ContactTable& table) {
     // The first law goes without its name: checkpoints are older than the list.
     if (table.law != 0)
       out.put(table.law), out.put(table.tangential), out.put(table.twisting),
-          out.put(table.adhesion);
+          out.put(table.adhesion), out.put(table.pull_off);
     for (const typename Law::Pair& pair : table.constants)
       Law::for_each_number(pair, [&](const char* /*key*/, double value) { out.put(value); });
   });

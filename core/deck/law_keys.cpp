@@ -133,6 +133,14 @@ LawChoice read_law(const TableReader& contact) {
   choice.twists = contact.string("twisting") != "none";
   choice.adhesion = adhesion_of(contact.string("adhesion"));
   const bool turns = choice.rolls || choice.twists, sticks = choice.adhesion != Adhesion::None;
+  choice.attracts = model == Jkr::kName;
+  if (choice.attracts && sticks)
+    contact.fail("adhesion", "jkr contacts have an attraction of their own",
+                 "write model = \"hertz\", or leave adhesion out");
+  if (!choice.attracts && contact.has("pull_off"))
+    contact.fail("pull_off",
+                 fmt::format("'pull_off' has no place where contact.model = \"{}\"", model),
+                 "write model = \"jkr\", or leave it out");
   if (sticks && model == "linear")
     contact.fail("adhesion", "linear contacts do not stick",
                  "write model = \"hertz\", or leave adhesion out");

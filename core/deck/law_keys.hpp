@@ -13,6 +13,7 @@ struct LawChoice {
   bool rolls = false;  ///< keys of rolling have a place
   bool twists = false;
   Adhesion adhesion = Adhesion::None;
+  bool attracts = false;  ///< jkr
 };
 
 /// Sets what a [[material]] or [[pair]] says for a law.

@@ -54,9 +54,10 @@ constexpr Group kGroups[] = {
       "write twisting = \"marshall\" in [contact], which acts by friction and tangential "
       "stiffness"}},
     {kCohesion,
-     {"adhesion beyond touch (JKR, liquid bridges) is",
-      "write adhesion = \"dmt\" or \"sjkr\" in [contact] of hertz contacts, with surface_energy or "
-      "cohesion_density; a [[bond]] breaks for good"}},
+     {"adhesion by liquid bridges or van der Waals forces at a distance is",
+      "write model = \"jkr\", or adhesion = \"dmt\" or \"sjkr\" of hertz contacts, in [contact], "
+      "with "
+      "surface_energy or cohesion_density; a [[bond]] breaks for good"}},
     {kElastic,
      {"elasticity by any moduli but Young's modulus and Poisson's ratio is",
       "give young_modulus and poisson_ratio to materials, with model = \"hertz\" in [contact]; a "

@@ -33,6 +33,7 @@ Rules read_rules(const TableReader& root) {
   rules.contact.no_tension = table.boolean("no_tension");
   if (table.string("tangential") == "mindlin-displacement")
     rules.contact.tangential = Tangential::MindlinDisplacement;
+  if (table.string("pull_off") == "peak") rules.contact.pull_off = PullOff::Peak;
   rules.reference_speed = table.optional_number("reference_speed");
   return rules;
 }
@@ -109,6 +110,7 @@ class ContactBuilder {
     table.tangential = rules_.contact.tangential;
     table.twisting = rules_.contact.twisting;
     table.adhesion = rules_.contact.adhesion;
+    table.pull_off = rules_.contact.pull_off;
     table.reference_speed = rules_.reference_speed;
     table.constants.resize(num_ * num_);
     for (std::size_t a = 0; a < num_; ++a) {
@@ -216,6 +218,9 @@ class ContactBuilder {
         !has(&ContactConstants::cohesion_density))
       fail("adhesion", "adhesion by area, and no pair of materials has cohesion_density",
            "add cohesion_density in J/m³ to the materials, or leave adhesion out");
+    if (rules_.choice.attracts && !has(&ContactConstants::surface_energy))
+      fail("model", "model = \"jkr\", and no pair of materials has surface_energy",
+           "add surface_energy in J/m² to the materials, or write model = \"hertz\"");
     if (rules_.choice.twists && !has(&ContactConstants::mu))
       fail("twisting", "twisting acts by friction, and no pair of materials has friction",
            "add friction to the materials, or leave twisting out");

@@ -19,10 +19,12 @@ constexpr KeySpec kPhysicsKeys[] = {
      "the names of two materials, which may be the same"},
     {"[contact]", "model", T::Choice, "", "linear",
      "`linear`: springs of a given stiffness; `hertz`: elastic spheres by `young_modulus` and "
-     "`poisson_ratio`, in 3D",
-     "linear|hertz"},
+     "`poisson_ratio`, in 3D; `jkr`: the same with surfaces that attract each other, by "
+     "`surface_energy`",
+     "linear|hertz|jkr"},
     {"[contact]", "tangential", T::Choice, "", "mindlin",
-     "of hertz contacts: `mindlin` adds up increments of force and takes back on unloading what "
+     "of hertz and jkr contacts: `mindlin` adds up increments of force and takes back on unloading "
+     "what "
      "the "
      "smaller area cannot bear; `mindlin-displacement` multiplies displacement by stiffness",
      "mindlin|mindlin-displacement"},
@@ -36,8 +38,13 @@ constexpr KeySpec kPhysicsKeys[] = {
      "of hertz contacts, while they touch: `dmt` pulls by `surface_energy`, `sjkr` and `sjkr2` by "
      "`cohesion_density`",
      "none|dmt|sjkr|sjkr2"},
+    {"[contact]", "pull_off", T::Choice, "", "limit",
+     "of jkr contacts, where one that is pulled apart ends: `limit`: where no balance is left, "
+     "with "
+     "5/9 of the largest pull; `peak`: at the largest pull",
+     "limit|peak"},
     {"[contact]", "reference_speed", T::PositiveNumber, "m/s", "of the start and of falls",
-     "of hertz contacts: the impact that the stable step allows for"},
+     "of hertz and jkr contacts: the impact that the stable step allows for"},
     {"[contact]", "no_tension", T::Boolean, "", "true",
      "a contact never pulls: the normal force is held at zero where the dashpot outweighs the "
      "spring"},

@@ -56,7 +56,9 @@ struct Touch<S, 2> {
 
 template <class S>
 struct Touch<S, 3> {
-  typename S::Real pressed, kt, ct, overlap;
+  typename S::Real pressed, kt, ct;
+  typename S::Real limit;       ///< of the tangential force [N]
+  typename S::Real area;        ///< squared radius of the contact [m²]
   typename S::Real nx, ny, nz;  ///< from the first to the second
 };
 

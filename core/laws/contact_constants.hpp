@@ -56,12 +56,19 @@ enum class Tangential {
 /// What pulls in Hertz contacts that stick.
 enum class Adhesion { None, Dmt, Sjkr, Sjkr2 };
 
+/// When a JKR contact that is pulled apart ends.
+enum class PullOff {
+  Limit,  ///< where no balance is left
+  Peak    ///< where the pull is largest
+};
+
 /// Rules for all contacts of a run.
 struct ContactRules {
   bool no_tension = true;  ///< clamp the normal force at zero while particles part
   Tangential tangential = Tangential::Mindlin;
   bool twisting = false;  ///< resistance to twisting, by those laws that have it
   Adhesion adhesion = Adhesion::None;
+  PullOff pull_off = PullOff::Limit;
 };
 
 /// Two that meet.

@@ -8,6 +8,7 @@
 #include <barchan/core/laws/contact_constants.hpp>
 #include <barchan/core/laws/history.hpp>
 #include <barchan/core/laws/law_key.hpp>
+#include <barchan/core/laws/mindlin.hpp>
 
 namespace barchan {
 
@@ -78,6 +79,10 @@ struct HertzMindlin {
     return acts(p) ? 4.0 * p.shear_star / p.young_star * stiffness(p, impact) : 0.0;
   }
   static double tangential_stiffness(const double* row, const Overlap& overlap);
+  /// Squared radius of a contact [m²].
+  static double area(const double* /*row*/, const Overlap& overlap) {
+    return overlap.depth / overlap.inverse_radius;
+  }
   template <class Add>
   static void for_each_motion(const Pair& p, const Impact& impact, double spin_gain, Add&& add) {
     const double k = stiffness(p, impact), c = dashpot(p, impact), m = impact.mass;
@@ -171,59 +176,23 @@ struct HertzMindlin {
       return touching;
     }
     const Real d = S::sqrt(d2), overlap = p.reach - d;
-    const Real both = p.inverse_mass * p.inverse_radius;  // one division for 1/d, R and m_eff
-    const Real q = S::set(1.0) / (d * both);
-    const Real inverse = q * both, radius = q * (d * p.inverse_mass),
-               mass = q * (d * p.inverse_radius);
-    const Real nx = p.dx * inverse, ny = p.dy * inverse, nz = p.dz * inverse;
-    const Real vn = p.vx * nx + p.vy * ny + p.vz * nz;
-    const Real a = S::sqrt(radius * overlap);
-    const Real damping = c.damping * S::sqrt(mass * a);
+    const Pairing<S> pair(p, d);
+    const Real a = S::sqrt(pair.radius * overlap);
+    const Real damping = c.damping * S::sqrt(pair.mass * a);
     const Real elastic = c.kn * a * overlap;
-    const Real normal = damping * vn - elastic;
+    const Real normal = damping * pair.vn - elastic;
     Real fn = S::select(S::less(c.cap, normal), c.cap, normal);
     Real pressed = S::abs(fn);
-    Law::template adhere<S>(c, {radius, overlap, d, inverse, p.reach, elastic}, fn, pressed);
-
-    const Real tx = p.vx - vn * nx - (p.uy * nz - p.uz * ny);
-    const Real ty = p.vy - vn * ny - (p.uz * nx - p.ux * nz);
-    const Real tz = p.vz - vn * nz - (p.ux * ny - p.uy * nx);
-    // A new contact has the radius zero and no force; its quotient is no number that counts.
-    const Real grown = S::select(S::less(zero, s[3]), a / s[3], zero);
-    const Real scale = S::select(S::less(c.growth, grown), c.growth, grown);
-    const Real stretch = c.kt * a * dt;
-    Real fx = scale * s[0] + stretch * tx, fy = scale * s[1] + stretch * ty,
-         fz = scale * s[2] + stretch * tz;
-    const Real along = fx * nx + fy * ny + fz * nz;
-    fx -= along * nx;
-    fy -= along * ny;
-    fz -= along * nz;
-    const Real viscous = c.tangential_ratio * damping;
-    const Real gx = viscous * tx, gy = viscous * ty, gz = viscous * tz;
-    Real hx = fx + gx, hy = fy + gy, hz = fz + gz;
-    const Real h2 = hx * hx + hy * hy + hz * hz, limit = c.mu * pressed;
-    const auto sliding = S::less(limit * limit, h2);
-    if (S::any(sliding)) {
-      const Real cut = S::select(sliding, limit / S::sqrt(h2), S::set(1.0));
-      hx = hx * cut;
-      hy = hy * cut;
-      hz = hz * cut;
-      fx = S::select(sliding, hx - gx, fx);
-      fy = S::select(sliding, hy - gy, fy);
-      fz = S::select(sliding, hz - gz, fz);
-    }
-    s[0] = S::where(touching, fx);
-    s[1] = S::where(touching, fy);
-    s[2] = S::where(touching, fz);
+    Law::template adhere<S>(c, {pair.radius, overlap, d, pair.inverse, p.reach, elastic}, fn,
+                            pressed);
+    const Real limit = c.mu * pressed, viscous = c.tangential_ratio * damping;
+    Real f[3] = {s[0], s[1], s[2]}, h[3];
+    mindlin<S>(c, pair, a, s[3], viscous, limit, dt, f, h);
+    for (int q = 0; q < 3; ++q) s[q] = S::where(touching, f[q]);
     s[3] = S::where(touching, S::select(S::less(zero, c.kt), a, zero));
-    out.fx = fn * nx + hx;
-    out.fy = fn * ny + hy;
-    out.fz = fn * nz + hz;
-    out.tx = ny * hz - nz * hy;
-    out.ty = nz * hx - nx * hz;
-    out.tz = nx * hy - ny * hx;
+    pair.act(fn, h, out);
     out.size = S::abs(fn) + limit;
-    t = {pressed, c.kt * a, viscous, overlap, nx, ny, nz};
+    t = {pressed, c.kt * a, viscous, limit, pair.radius * overlap, pair.nx, pair.ny, pair.nz};
     return touching;
   }
 };

@@ -73,6 +73,10 @@ struct LinearSpring {
   static double stiffness(const Pair& p, const Impact& /*impact*/) { return p.kn; }
   static double dashpot(const Pair& p, const Impact& impact);  ///< there [N·s/m]
   static double tangential_stiffness(const Pair& p, const Impact& /*impact*/) { return p.kt; }
+  /// Squared radius of a contact, where one is asked for [m²].
+  static double area(const double* /*row*/, const Overlap& overlap) {
+    return overlap.depth / overlap.inverse_radius;
+  }
   static double tangential_stiffness(const double* row, const Overlap& /*overlap*/) {
     return row[Kt];
   }
@@ -251,7 +255,7 @@ struct LinearSpring {
     out.ty = nz * fx - nx * fz;
     out.tz = nx * fy - ny * fx;
     out.size = S::abs(fn) + limit;
-    t = {S::abs(fn), c.kt, damp.ct, p.reach - d, nx, ny, nz};
+    t = {S::abs(fn), c.kt, damp.ct, limit, (p.reach - d) / p.inverse_radius, nx, ny, nz};
     return touching;
   }
 

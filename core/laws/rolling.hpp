@@ -142,8 +142,8 @@ struct WithRolling : Base {
     for (int c = 0; c < (is_flat ? 1 : 3); ++c) x2 += more[c] * more[c];
     double sum = Base::energy(row, base, overlap, numbers) + 0.5 * kr * x2;
     if (!is_flat)
-      sum += 0.25 * row[kFirst + RollingPart::Twisting] * kt * overlap.depth /
-             overlap.inverse_radius * more[3] * more[3];
+      sum += 0.25 * row[kFirst + RollingPart::Twisting] * kt * Base::area(row, overlap) * more[3] *
+             more[3];
     return sum;
   }
 
@@ -219,12 +219,12 @@ struct WithRolling : Base {
       z = S::select(slipping, (fz - gz) * inverse, z);
     }
     // Twisting
-    const Real area = radius * t.overlap, half = S::set(0.5) * c.twisting * area;
+    const Real half = S::set(0.5) * c.twisting * t.area;
     const Real turn = p.turn_x * t.nx + p.turn_y * t.ny + p.turn_z * t.nz;
     const Real twist_stiffness = half * t.kt, viscous = half * t.ct * turn;
     Real twist = kept[3] + turn * dt;
     Real q = twist_stiffness * twist + viscous;
-    const Real most = S::set(2.0 / 3.0) * c.twisting * S::sqrt(area) * c.base.mu * t.pressed;
+    const Real most = S::set(2.0 / 3.0) * c.twisting * S::sqrt(t.area) * t.limit;
     const auto spinning = S::less(most, S::abs(q));
     if (S::any(spinning)) {
       q = S::select(spinning, S::copysign(most, q), q);

@@ -9,9 +9,11 @@ namespace barchan {
 double contact_range(const ContactTable& contacts, double largest_radius) {
   double range = 0.0;
   with_law(contacts.law, [&]<class Law>(Law /*law*/) {
-    if constexpr (requires(const ContactConstants& pair) { Law::range(pair, largest_radius); }) {
+    if constexpr (requires(const ContactConstants& pair, const ContactRules& rules) {
+                    Law::range(pair, rules, largest_radius);
+                  }) {
       for (const ContactConstants& pair : contacts.constants)
-        range = std::max(range, Law::range(pair, largest_radius));
+        range = std::max(range, Law::range(pair, contacts.rules(), largest_radius));
     }
   });
   return range;

@@ -48,8 +48,11 @@ struct ContactTable {
 
   bool twisting = false;               ///< read by contacts that roll
   Adhesion adhesion = Adhesion::None;  ///< read by contacts that stick
+  PullOff pull_off = PullOff::Limit;   ///< read by JKR contacts
 
-  [[nodiscard]] ContactRules rules() const { return {no_tension, tangential, twisting, adhesion}; }
+  [[nodiscard]] ContactRules rules() const {
+    return {no_tension, tangential, twisting, adhesion, pull_off};
+  }
 
   [[nodiscard]] const ContactConstants& at(int a, int b) const {
     return constants[static_cast<std::size_t>(a) * static_cast<std::size_t>(num_materials) +

@@ -33,6 +33,13 @@ struct Avx2 {
   BARCHAN_INLINE Real odd(Real a) {
     return Real(_mm256_or_pd(__m256d(a), _mm256_castsi256_pd(_mm256_set1_epi64x(1))));
   }
+  BARCHAN_INLINE Real rough_cube_root(Real a) {
+    const __m256i high = _mm256_srli_epi64(_mm256_castpd_si256(__m256d(a)), 32);
+    const __m256i third =
+        _mm256_srli_epi64(_mm256_mul_epu32(high, _mm256_set1_epi64x(0x55555556)), 32);
+    return Real(_mm256_castsi256_pd(
+        _mm256_slli_epi64(_mm256_add_epi64(third, _mm256_set1_epi64x(715094163)), 32)));
+  }
   BARCHAN_INLINE bool any(Mask m) { return _mm256_movemask_pd(m) != 0; }
   BARCHAN_INLINE unsigned bits(Mask m) { return static_cast<unsigned>(_mm256_movemask_pd(m)); }
   BARCHAN_INLINE int write_set(unsigned bits, int first, int* to) {

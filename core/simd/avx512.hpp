@@ -35,6 +35,13 @@ struct Avx512 {
     return Real(_mm512_castsi512_pd(
         _mm512_or_epi64(_mm512_castpd_si512(__m512d(a)), _mm512_set1_epi64(1))));
   }
+  BARCHAN_INLINE Real rough_cube_root(Real a) {
+    const __m512i high = _mm512_srli_epi64(_mm512_castpd_si512(__m512d(a)), 32);
+    const __m512i third =
+        _mm512_srli_epi64(_mm512_mul_epu32(high, _mm512_set1_epi64(0x55555556)), 32);
+    return Real(_mm512_castsi512_pd(
+        _mm512_slli_epi64(_mm512_add_epi64(third, _mm512_set1_epi64(715094163)), 32)));
+  }
   BARCHAN_INLINE bool any(Mask m) { return m.bits != 0; }
   BARCHAN_INLINE unsigned bits(Mask m) { return m.bits; }
   BARCHAN_INLINE int write_set(unsigned bits, int first, int* to) {

@@ -40,8 +40,8 @@ TEST(NotModelled, IsCalledThatInsteadOfAMisspeltKey) {
   const std::vector<Case> cases{
       {"twisting_friction", "twisting by constants of its own is"},
       {"torsion_stiffness", "twisting by constants of its own is"},
-      {"surface_tension", "adhesion beyond touch (JKR, liquid bridges) is"},
-      {"liquidVolume", "adhesion beyond touch (JKR, liquid bridges) is"},
+      {"surface_tension", "adhesion by liquid bridges or van der Waals forces at a distance is"},
+      {"liquidVolume", "adhesion by liquid bridges or van der Waals forces at a distance is"},
       {"shear_modulus", "elasticity by any moduli but"},
       {"contact_law", "any law of contact but"},
       {"temperature", "heat is"},
