@@ -102,7 +102,7 @@ std::string describe(const ContactTable& contacts) {
                       contacts.tangential == Tangential::Mindlin ? "Mindlin by increments of force"
                                                                  : "Mindlin by displacement");
     constexpr const char* kAdhesion[] = {"", ", DMT adhesion", ", SJKR cohesion",
-                                         ", SJKR2 cohesion"};
+                                         ", SJKR2 cohesion", ", bridges of liquid"};
     text += kAdhesion[static_cast<int>(contacts.adhesion)];
     if (Law::kRolls) text += ", rolling springs";
     return contacts.twisting ? text + ", twisting" : text;

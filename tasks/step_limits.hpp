@@ -1,11 +1,11 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
 
+#include <barchan/core/laws/stable_step.hpp>
 #include <barchan/core/model/mass.hpp>
 #include <barchan/core/particles/layout.hpp>
 #include <barchan/tasks/stability.hpp>
@@ -13,11 +13,6 @@
 // What limits of the time step are made of (stability.hpp).
 
 namespace barchan {
-
-inline double stable_step(double m, double k, double c) {
-  if (k > 0.0) return (std::sqrt(c * c + 4.0 * m * k) - c) / k;
-  return c > 0.0 ? 2.0 * m / c : kInfinite;
-}
 
 inline double mass_in_motion(const ParticleData& p, int dimension) {
   return p.fixed ? kInfinite : mass_of(p, dimension);

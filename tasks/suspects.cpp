@@ -71,22 +71,46 @@ std::string describe_fastest(RunParts<Dim>& run) {
          run.communicator.bcast(describe<Dim>(run.model, fastest, partners_of(run, fastest)));
 }
 
-template <int Dim>
-std::string describe_worst_overlap(RunParts<Dim>& run) {
+namespace {
+
+/// Of what every lane knows the worst, on all ranks. Collective.
+template <class Worst, int Dim>
+Worst worst_of_all(RunParts<Dim>& run, Worst (*worst_of)(const Brick<Dim>&)) {
   run.strip.complete_halo();
-  WorstOverlap worst;
-  const auto take = [&worst](const WorstOverlap& other) {
+  Worst worst;
+  const auto take = [&worst](const Worst& other) {
     if (other.is_worse_than(worst)) worst = other;
   };
-  for (Lane<Dim>& lane : run.strip.lanes()) take(worst_overlap(lane.brick));
-  for (const auto& of_rank : run.communicator.gather_all(std::span<const WorstOverlap>(&worst, 1)))
+  for (Lane<Dim>& lane : run.strip.lanes()) take(worst_of(lane.brick));
+  for (const auto& of_rank : run.communicator.gather_all(std::span<const Worst>(&worst, 1)))
     take(of_rank);
-  return run.communicator.bcast(fmt::format(
-      "now it is largest between particle {} at {} and {}: {:.3g} m, {:.3g} of the smaller radius",
-      worst.id, in_brackets(worst.position, Dim),
-      worst.wall >= 0 ? name_of_wall(run.model, worst.wall)
-                      : fmt::format("particle {}", worst.with),
-      worst.overlap, worst.share));
+  run.communicator.bcast(std::as_writable_bytes(std::span(&worst, 1)));
+  return worst;
+}
+
+/// "particle 3 at [1, 2] and wall 'lid'"
+template <int Dim>
+std::string names_of(const Model& model, const WorstOverlap& at) {
+  return fmt::format(
+      "particle {} at {} and {}", at.id, in_brackets(at.position, Dim),
+      at.wall >= 0 ? name_of_wall(model, at.wall) : fmt::format("particle {}", at.with));
+}
+
+}  // namespace
+
+template <int Dim>
+std::string describe_worst_overlap(RunParts<Dim>& run) {
+  const auto worst = worst_of_all<WorstOverlap>(run, &worst_overlap<Dim>);
+  return fmt::format("now it is largest between {}: {:.3g} m, {:.3g} of the smaller radius",
+                     names_of<Dim>(run.model, worst), worst.overlap, worst.share);
+}
+
+template <int Dim>
+std::string describe_stiffest_contact(RunParts<Dim>& run) {
+  const auto worst = worst_of_all<StiffestContact>(run, &stiffest_contact<Dim>);
+  return fmt::format("{} overlap by {:.3g} of the smaller radius, so that {:.3g} s is stable",
+                     names_of<Dim>(run.model, worst.at), worst.at.share,
+                     run.world.dt / worst.step_share);
 }
 
 /// A skin wider than particles would not mend what goes wild.
@@ -105,5 +129,7 @@ template std::string describe_fastest(RunParts<2>&);
 template std::string describe_fastest(RunParts<3>&);
 template std::string describe_worst_overlap(RunParts<2>&);
 template std::string describe_worst_overlap(RunParts<3>&);
+template std::string describe_stiffest_contact(RunParts<2>&);
+template std::string describe_stiffest_contact(RunParts<3>&);
 
 }  // namespace barchan

@@ -19,6 +19,8 @@ template <int Dim>
 [[nodiscard]] std::string describe_fastest(RunParts<Dim>& run);
 template <int Dim>
 [[nodiscard]] std::string describe_worst_overlap(RunParts<Dim>& run);
+template <int Dim>
+[[nodiscard]] std::string describe_stiffest_contact(RunParts<Dim>& run);
 
 /// For a travel beyond half the skin, whether in one step or since lists were built [m].
 /// @param reach  of the contact search [m]

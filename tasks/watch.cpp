@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -19,6 +20,8 @@ namespace barchan {
 namespace {
 
 constexpr std::int64_t kOverlapEvery = 1000;  // steps between looks at overlaps, at least
+/// An overlap at which a contact is too stiff for the step.
+constexpr double kTooStiff = std::numeric_limits<double>::infinity();
 
 std::string plural(std::int64_t count, const char* word) {
   return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
@@ -57,7 +60,11 @@ void Watch<Dim>::look(std::int64_t step, CheckNumbers& mine) {
     run_.strip.complete_halo();
     std::vector<double> shares(run_.strip.lanes().size(), 0.0);
     graph_.for_each_lane([&](int l) {
-      shares[static_cast<std::size_t>(l)] = worst_overlap(run_.strip.lane(l).brick).share;
+      const Brick<Dim>& brick = run_.strip.lane(l).brick;
+      double& share = shares[static_cast<std::size_t>(l)];
+      share = worst_overlap(brick).share;
+      if (!run_.model.time.allow_unstable && stiffest_contact(brick).step_share > 1.0)
+        share = kTooStiff;
     });
     for (const double share : shares) see_overlap(share);
   }
@@ -77,9 +84,9 @@ template <int Dim>
 bool Watch<Dim>::is_harmless(const CheckNumbers& answer) const {
   const LimitSpec& limits = run_.model.limits;
   return answer.distance <= 0.5 * run_.world.skin && std::isfinite(answer.speed) &&
-         answer.outside == 0 && answer.overlap <= limits.overlap_warning &&
-         answer.overlap <= limits.overlap_error && answer.particles == population_.size &&
-         answer.imbalance == LinkCounts{};
+         answer.overlap < kTooStiff && answer.outside == 0 &&
+         answer.overlap <= limits.overlap_warning && answer.overlap <= limits.overlap_error &&
+         answer.particles == population_.size && answer.imbalance == LinkCounts{};
 }
 
 template <int Dim>
@@ -124,6 +131,12 @@ void Watch<Dim>::judge_balance(std::int64_t step, const CheckNumbers& answer) co
 
 template <int Dim>
 void Watch<Dim>::judge_overlap(std::int64_t step, double share) {
+  if (share == kTooStiff) {
+    throw AgreedError(fmt::format(
+        "at step {} time.step = {:g} s has become unstable: {}; start the run from step 0 with a "
+        "smaller time.step, or with contact.reference_speed as fast as contacts are struck",
+        step, run_.world.dt, describe_stiffest_contact(run_)));
+  }
   const LimitSpec& limits = run_.model.limits;
   const bool is_error = share > limits.overlap_error;
   if (!is_error && (has_warned_ || share <= limits.overlap_warning)) return;

@@ -40,6 +40,17 @@ struct WorstOverlap {
   }
 };
 
+/// Two for which the step is longest, beside what is stable for them as they overlap.
+struct StiffestContact {
+  double step_share = 0.0;  ///< the step over the stable one
+  WorstOverlap at;
+
+  [[nodiscard]] bool is_worse_than(const StiffestContact& other) const {
+    return step_share > other.step_share ||
+           (step_share == other.step_share && at.is_worse_than(other.at));
+  }
+};
+
 /// Contacts with history, contacts with walls that have one, and bonds; each counted on one lane.
 struct LinkCounts {
   std::int64_t contacts = 0, wall_contacts = 0, bonds = 0;

@@ -12,6 +12,40 @@ namespace {
 /// from where it is but for rounding.
 constexpr double kTouching = 1.0 - 1e-9;
 
+/// The lower id first: which row is i depends on cells and cuts.
+template <int Dim>
+WorstOverlap overlap_of(const ParticleStore<Dim>& store, std::int32_t i, std::int32_t j,
+                        double overlap) {
+  const auto id_of = [&store](std::int32_t row) { return store.id[static_cast<std::size_t>(row)]; };
+  const auto [first, second] = id_of(i) < id_of(j) ? std::pair(i, j) : std::pair(j, i);
+  WorstOverlap here{overlap / std::min(store.radius(i), store.radius(j)),
+                    overlap,
+                    id_of(first),
+                    id_of(second),
+                    -1,
+                    {}};
+  std::copy_n(store.x(first), Dim, here.position);
+  return here;
+}
+template <int Dim>
+WorstOverlap overlap_of(const ParticleStore<Dim>& store, const WallContact<Dim>& c,
+                        double overlap) {
+  const double radius = store.radius(c.row);
+  WorstOverlap here{overlap / radius, overlap, store.id[static_cast<std::size_t>(c.row)], 0,
+                    c.wall,           {}};
+  std::copy_n(store.x(c.row), Dim, here.position);
+  return here;
+}
+
+template <int Dim>
+double wall_overlap(const Brick<Dim>& brick, const WallContact<Dim>& c) {
+  const World<Dim>& world = *brick.world;
+  const auto w = static_cast<std::size_t>(c.wall);
+  const double* x = brick.store.x(c.row);
+  return brick.store.radius(c.row) -
+         world.wall_shapes[w].foot(world.walls[w].point, c.image, x).distance;
+}
+
 template <int Dim>
 void take_worst_pair(const ParticleStore<Dim>& store, const PeriodicBox& box, const PairList& list,
                      WorstOverlap& worst) {
@@ -26,13 +60,7 @@ void take_worst_pair(const ParticleStore<Dim>& store, const PeriodicBox& box, co
     const double d2 = distance2<Dim>(box, store.x(i), store.x(j));
     if (d2 >= known * known && known > 0.0) continue;
     const double overlap = reach - std::sqrt(d2);
-    // The lower id first: which row is i depends on cells and cuts.
-    const auto id_of = [&store](std::int32_t row) {
-      return store.id[static_cast<std::size_t>(row)];
-    };
-    const auto [first, second] = id_of(i) < id_of(j) ? std::pair(i, j) : std::pair(j, i);
-    WorstOverlap here{overlap / least, overlap, id_of(first), id_of(second), -1, {}};
-    std::copy_n(store.x(first), Dim, here.position);
+    const WorstOverlap here = overlap_of(store, i, j, overlap);
     if (overlap > 0.0 && here.is_worse_than(worst)) worst = here;
   }
 }
@@ -150,21 +178,52 @@ Partners partners_before_step(const Brick<Dim>& brick, std::int32_t row) {
 template <int Dim>
 WorstOverlap worst_overlap(const Brick<Dim>& brick) {
   const ParticleStore<Dim>& store = brick.store;
-  const World<Dim>& world = *brick.world;
   WorstOverlap worst;
-  const PeriodicBox& box = world.grid.box();
+  const PeriodicBox& box = brick.world->grid.box();
   take_worst_pair(store, box, brick.pairs, worst);
   if (brick.band(Side::Left).exists)
     take_worst_pair(store, box, brick.band(Side::Left).across, worst);
   for (const WallContact<Dim>& c : brick.walls.list()) {
-    const auto w = static_cast<std::size_t>(c.wall);
-    const double radius = store.radius(c.row);
-    const double overlap =
-        radius - world.wall_shapes[w].foot(world.walls[w].point, c.image, store.x(c.row)).distance;
-    WorstOverlap here{overlap / radius, overlap, store.id[static_cast<std::size_t>(c.row)], 0,
-                      c.wall,           {}};
-    std::copy_n(store.x(c.row), Dim, here.position);
+    const double overlap = wall_overlap(brick, c);
+    const WorstOverlap here = overlap_of(store, c, overlap);
     if (overlap > 0.0 && here.is_worse_than(worst)) worst = here;
+  }
+  return worst;
+}
+
+template <int Dim>
+StiffestContact stiffest_contact(const Brick<Dim>& brick) {
+  const ParticleStore<Dim>& store = brick.store;
+  const World<Dim>& world = *brick.world;
+  const auto stable_step = world.laws.law().template in<Dim>().stable_step;
+  StiffestContact worst;
+  if (stable_step == nullptr) return worst;
+  const auto take = [&](const double* row, const Overlap& overlap, double inverse_mass, auto what) {
+    if (!(overlap.depth > 0.0) || !(inverse_mass > 0.0)) return;
+    const double share = world.dt / stable_step(row, overlap, 1.0 / inverse_mass);
+    if (share < worst.step_share) return;
+    const StiffestContact here{share, what()};
+    if (here.is_worse_than(worst)) worst = here;
+  };
+  brick.for_each_counted([&](const PairList& list, const PairBlock& block) {
+    block.for_each_candidate(list, [&](std::size_t k, const double* /*history*/) {
+      const std::int32_t i = list.i[k], j = list.j[k];
+      const double reach = store.radius(i) + store.radius(j);
+      const double d2 = distance2<Dim>(world.grid.box(), store.x(i), store.x(j));
+      if (list.code[k] == LawTable::kBonded || d2 >= reach * reach) return;
+      const double depth = reach - std::sqrt(d2);
+      take(world.laws.row(list.code[k]),
+           {depth, store.inverse_radius(i) + store.inverse_radius(j), reach},
+           store.inverse_mass(i) + store.inverse_mass(j),
+           [&] { return overlap_of(store, i, j, depth); });
+    });
+  });
+  for (const WallContact<Dim>& c : brick.walls.list()) {
+    const double depth = wall_overlap(brick, c);
+    const std::int32_t material = world.wall_specs[static_cast<std::size_t>(c.wall)].material;
+    take(world.laws.row(world.laws.code(material, store.type[static_cast<std::size_t>(c.row)])),
+         {depth, store.inverse_radius(c.row), store.radius(c.row)}, store.inverse_mass(c.row),
+         [&] { return overlap_of(store, c, depth); });
   }
   return worst;
 }
@@ -183,5 +242,7 @@ template Partners partners_before_step(const Brick<2>&, std::int32_t);
 template Partners partners_before_step(const Brick<3>&, std::int32_t);
 template WorstOverlap worst_overlap(const Brick<2>&);
 template WorstOverlap worst_overlap(const Brick<3>&);
+template StiffestContact stiffest_contact(const Brick<2>&);
+template StiffestContact stiffest_contact(const Brick<3>&);
 
 }  // namespace barchan

@@ -51,5 +51,8 @@ template <int Dim>
 [[nodiscard]] Partners partners_before_step(const Brick<Dim>& brick, std::int32_t row);
 template <int Dim>
 [[nodiscard]] WorstOverlap worst_overlap(const Brick<Dim>& brick);
+/// Nothing where stiffness does not grow with overlap.
+template <int Dim>
+[[nodiscard]] StiffestContact stiffest_contact(const Brick<Dim>& brick);
 
 }  // namespace barchan

@@ -104,7 +104,8 @@ void check_alternatives(const TableReader& table, bool is_pair) {
 Adhesion adhesion_of(const std::string& word) {
   if (word == "dmt") return Adhesion::Dmt;
   if (word == "sjkr") return Adhesion::Sjkr;
-  return word == "sjkr2" ? Adhesion::Sjkr2 : Adhesion::None;
+  if (word == "sjkr2") return Adhesion::Sjkr2;
+  return word == "bridge" ? Adhesion::Bridge : Adhesion::None;
 }
 
 }  // namespace
@@ -145,7 +146,7 @@ LawChoice read_law(const TableReader& contact) {
     contact.fail("adhesion", "linear contacts do not stick",
                  "write model = \"hertz\", or leave adhesion out");
   while (with_law(choice.law, [&]<class Law>(Law /*law*/) {
-    return model != Law::kName || turns != Law::kRolls || sticks != Law::kSticks;
+    return model != Law::kName || turns != Law::kRolls || !Law::sticks_by(choice.adhesion);
   }))
     ++choice.law;
   if (const auto fault = find_law_fault(choice.law, choice.twists, contact.dimension()))

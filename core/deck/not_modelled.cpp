@@ -12,9 +12,8 @@ namespace {
 // Beginnings of words, in lower case and with a space before each word.
 constexpr std::string_view kTwisting[] = {" twisting f", " twisting s", " twisting d", " torsion",
                                           " spinning"};
-constexpr std::string_view kCohesion[] = {
-    " capillar", " surface tension", " liquid",      " suction", " contact angle", " pull off",
-    " jkr",      " van der",         " bond number", " work of", " adhesive",      " cohesive"};
+constexpr std::string_view kCohesion[] = {" capillar",    " liquid",  " suction",  " van der",
+                                          " bond number", " work of", " adhesive", " cohesive"};
 constexpr std::string_view kElastic[] = {" elastic mod", " shear modulus", " bulk modulus"};
 constexpr std::string_view kPoisson[] = {" poisson"};
 constexpr std::string_view kLaws[] = {" contact law", " contact model", " law", " hysteresis",
@@ -54,10 +53,10 @@ constexpr Group kGroups[] = {
       "write twisting = \"marshall\" in [contact], which acts by friction and tangential "
       "stiffness"}},
     {kCohesion,
-     {"adhesion by liquid bridges or van der Waals forces at a distance is",
-      "write model = \"jkr\", or adhesion = \"dmt\" or \"sjkr\" of hertz contacts, in [contact], "
-      "with "
-      "surface_energy or cohesion_density; a [[bond]] breaks for good"}},
+     {"adhesion by van der Waals forces at a distance, or by liquid that flows, is",
+      "write model = \"jkr\", or adhesion = \"dmt\", \"sjkr\" or \"bridge\" of hertz contacts, in "
+      "[contact], with surface_energy, cohesion_density or a [[bridge]]; a [[bond]] breaks for "
+      "good"}},
     {kElastic,
      {"elasticity by any moduli but Young's modulus and Poisson's ratio is",
       "give young_modulus and poisson_ratio to materials, with model = \"hertz\" in [contact]; a "

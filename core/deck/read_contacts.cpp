@@ -1,5 +1,7 @@
 // Materials and the contact constants of every pair that can meet.
 #include <algorithm>
+#include <array>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -81,7 +83,8 @@ class ContactBuilder {
         draft_(draft),
         num_(draft.deck.model.materials.size()),
         rules_(read_rules(root)),
-        explicit_(num_ * num_) {}
+        explicit_(num_ * num_),
+        bridges_(num_ * num_) {}
 
   void read_own() {
     for (const Node* node : root_.tables("material")) {
@@ -98,6 +101,11 @@ class ContactBuilder {
   void read_pairs() {
     for (const Node* node : root_.tables("pair"))
       read_pair(TableReader(*node, root_.dimension(), "[[pair]]"));
+  }
+
+  void read_bridges() {
+    for (const Node* node : root_.tables("bridge"))
+      read_bridge(TableReader(*node, root_.dimension(), "[[bridge]]"));
   }
 
   ContactTable build() const {
@@ -119,6 +127,7 @@ class ContactBuilder {
         if (users.can_meet(a, b)) check_complete(a, b, constants);
         auto& pair = table.constants[a * num_ + b];
         pair = constants.value_or(ContactConstants{});
+        pair.bridge = bridges_[a * num_ + b].value_or(Bridge{});
         with_law(rules_.choice.law,
                  [&]<class Law>(Law /*law*/) { Law::solve(pair, rules_.contact); });
         table.constants[b * num_ + a] = pair;
@@ -129,20 +138,41 @@ class ContactBuilder {
   }
 
  private:
-  void read_pair(const TableReader& table) {
+  /// The two materials of a table, which is the first of these two in `known`.
+  template <class Known>
+  std::array<std::size_t, 2> read_materials(const TableReader& table, const Known& known) const {
     const auto names = table.names("materials");
     if (names.size() != 2) {
       table.fail("materials", fmt::format("materials holds {} names, expected 2", names.size()),
                  "name two materials, or one twice");
     }
-    const auto a =
-        static_cast<std::size_t>(draft_.materials.at(names[0], table.place("materials")));
-    const auto b =
-        static_cast<std::size_t>(draft_.materials.at(names[1], table.place("materials")));
-    if (explicit_[a * num_ + b]) {
-      table.fail("materials", fmt::format("a second [[pair]] of '{}' and '{}'", names[0], names[1]),
+    std::array<std::size_t, 2> two{};
+    for (std::size_t m = 0; m < 2; ++m)
+      two[m] = static_cast<std::size_t>(draft_.materials.at(names[m], table.place("materials")));
+    if (known[two[0] * num_ + two[1]]) {
+      table.fail("materials",
+                 fmt::format("a second {} of '{}' and '{}'", table.name(), names[0], names[1]),
                  "keep one");
     }
+    return two;
+  }
+
+  void read_bridge(const TableReader& table) {
+    if (rules_.choice.adhesion != Adhesion::Bridge)
+      table.fail("materials", "a [[bridge]] has no place without contact.adhesion = \"bridge\"",
+                 "write model = \"hertz\" and adhesion = \"bridge\" in [contact], or leave it out");
+    const auto [a, b] = read_materials(table, bridges_);
+    const double angle = table.number("contact_angle");
+    if (!(angle < 90.0))
+      table.fail("contact_angle",
+                 fmt::format("contact_angle = {}: such a liquid wets nothing", angle),
+                 "give an angle in degrees, below 90");
+    bridges_[a * num_ + b] = bridges_[b * num_ + a] = Bridge{
+        table.number("surface_tension"), angle * std::numbers::pi / 180.0, table.number("volume")};
+  }
+
+  void read_pair(const TableReader& table) {
+    const auto [a, b] = read_materials(table, explicit_);
     ContactConstants constants = base_of(a, b, table);
     read_law_keys(rules_.choice, table, constants);
     if (pairs_stand_alone()) {
@@ -214,7 +244,10 @@ class ContactBuilder {
     if (adhesion == Adhesion::Dmt && !has(&ContactConstants::surface_energy))
       fail("adhesion", "adhesion = \"dmt\", and no pair of materials has surface_energy",
            "add surface_energy in J/m² to the materials, or leave adhesion out");
-    if (adhesion != Adhesion::None && adhesion != Adhesion::Dmt &&
+    if (adhesion == Adhesion::Bridge && root_.tables("bridge").empty())
+      fail("adhesion", "adhesion = \"bridge\", and there is no [[bridge]]",
+           "add a [[bridge]] with materials, surface_tension and volume, or leave adhesion out");
+    if ((adhesion == Adhesion::Sjkr || adhesion == Adhesion::Sjkr2) &&
         !has(&ContactConstants::cohesion_density))
       fail("adhesion", "adhesion by area, and no pair of materials has cohesion_density",
            "add cohesion_density in J/m³ to the materials, or leave adhesion out");
@@ -274,6 +307,7 @@ class ContactBuilder {
   Rules rules_;
   PairTable explicit_;
   PairTable own_;
+  std::vector<std::optional<Bridge>> bridges_;
 };
 
 }  // namespace
@@ -297,6 +331,7 @@ void read_contacts(const TableReader& root, DeckDraft& draft) {
   ContactBuilder builder(root, draft);
   builder.read_own();
   builder.read_pairs();
+  builder.read_bridges();
   draft.deck.model.contacts = builder.build();
 }
 

@@ -17,6 +17,13 @@ constexpr KeySpec kPhysicsKeys[] = {
      "of a particle's own body"},
     {"[[pair]]", "materials", T::Names, "", "required",
      "the names of two materials, which may be the same"},
+    {"[[bridge]]", "materials", T::Names, "", "required",
+     "the names of two materials, which may be the same"},
+    {"[[bridge]]", "surface_tension", T::PositiveNumber, "N/m", "required",
+     "of the liquid; water has 0.072"},
+    {"[[bridge]]", "contact_angle", T::NonNegativeNumber, "degrees", "0",
+     "between liquid and surface, below 90"},
+    {"[[bridge]]", "volume", T::PositiveNumber, "m³", "required", "of each bridge"},
     {"[contact]", "model", T::Choice, "", "linear",
      "`linear`: springs of a given stiffness; `hertz`: elastic spheres by `young_modulus` and "
      "`poisson_ratio`, in 3D; `jkr`: the same with surfaces that attract each other, by "
@@ -24,9 +31,8 @@ constexpr KeySpec kPhysicsKeys[] = {
      "linear|hertz|jkr"},
     {"[contact]", "tangential", T::Choice, "", "mindlin",
      "of hertz and jkr contacts: `mindlin` adds up increments of force and takes back on unloading "
-     "what "
-     "the "
-     "smaller area cannot bear; `mindlin-displacement` multiplies displacement by stiffness",
+     "what the smaller area cannot bear; `mindlin-displacement` multiplies displacement by "
+     "stiffness",
      "mindlin|mindlin-displacement"},
     {"[contact]", "rolling", T::Choice, "", "none",
      "`spring`: contacts resist rolling, by `rolling_friction` and the keys beside it",
@@ -35,13 +41,12 @@ constexpr KeySpec kPhysicsKeys[] = {
      "`marshall`: contacts of spheres resist twisting about their normal, by `friction`",
      "none|marshall"},
     {"[contact]", "adhesion", T::Choice, "", "none",
-     "of hertz contacts, while they touch: `dmt` pulls by `surface_energy`, `sjkr` and `sjkr2` by "
-     "`cohesion_density`",
-     "none|dmt|sjkr|sjkr2"},
+     "of hertz contacts: while they touch, `dmt` pulls by `surface_energy`, `sjkr` and `sjkr2` by "
+     "`cohesion_density`; `bridge`: liquid pulls until it ruptures, see `[[bridge]]`",
+     "none|dmt|sjkr|sjkr2|bridge"},
     {"[contact]", "pull_off", T::Choice, "", "limit",
      "of jkr contacts, where one that is pulled apart ends: `limit`: where no balance is left, "
-     "with "
-     "5/9 of the largest pull; `peak`: at the largest pull",
+     "with 5/9 of the largest pull; `peak`: at the largest pull",
      "limit|peak"},
     {"[contact]", "reference_speed", T::PositiveNumber, "m/s", "of the start and of falls",
      "of hertz and jkr contacts: the impact that the stable step allows for"},

@@ -16,6 +16,7 @@ constexpr KeySpec kRunKeys[] = {
     {"deck", "material", T::Tables, "", "required", "what particles and walls are made of"},
     {"deck", "pair", T::Tables, "", "none", "contact constants of two materials"},
     {"deck", "contact", T::Table, "", "none", "rules for all contacts"},
+    {"deck", "bridge", T::Tables, "", "none", "liquid between touching particles"},
     {"deck", "bond", T::Tables, "", "none", "laws of linking elements"},
     {"deck", "particles", T::Tables, "", "required", "where particles come from"},
     {"deck", "wall", T::Tables, "", "none", "planes and plates"},

@@ -7,6 +7,7 @@
 #include <barchan/core/laws/contact.hpp>
 #include <barchan/core/laws/contact_constants.hpp>
 #include <barchan/core/laws/history.hpp>
+#include <barchan/core/particles/layout.hpp>
 #include <barchan/core/simd/scalar.hpp>
 
 namespace barchan {
@@ -24,6 +25,8 @@ struct ContactLawIn {
                    double* history) = nullptr;
   /// Elastic [J].
   double (*energy)(const double* row, const Overlap& overlap, const double* history) = nullptr;
+  /// Of two that overlap so, of a reduced mass [s]; null where it is the same at any overlap.
+  double (*stable_step)(const double* row, const Overlap& overlap, double mass) = nullptr;
 };
 
 /// A law of contact as the program sees it, whichever it is. Made from the law's file alone.
@@ -70,13 +73,20 @@ PairForce<simd::Scalar, Dim> respond_at(int level, const double* row,
 
 template <class Law, int Dim>
 ContactLawIn<Dim> law_in() {
-  if constexpr (Dim == 2 && !Law::kIsForDisks)
+  if constexpr (Dim == 2 && !Law::kIsForDisks) {
     return {};
-  else
-    return {Law::template kHistory<Dim>, &respond_at<Law, Dim>,
-            [](const double* row, const Overlap& overlap, const double* history) {
-              return Law::energy(row, Law::template kHistory<Dim>, overlap, history);
-            }};
+  } else {
+    ContactLawIn<Dim> law{Law::template kHistory<Dim>, &respond_at<Law, Dim>,
+                          [](const double* row, const Overlap& overlap, const double* history) {
+                            return Law::energy(row, Law::template kHistory<Dim>, overlap, history);
+                          }};
+    if constexpr (requires(const double* row) { Law::stable_step(row, Overlap{}, 1.0, 1.0); }) {
+      law.stable_step = [](const double* row, const Overlap& overlap, double mass) {
+        return Law::stable_step(row, overlap, mass, Layout<Dim>::kSpinGain);
+      };
+    }
+    return law;
+  }
 }
 
 }  // namespace detail

@@ -60,6 +60,7 @@ struct Touch<S, 3> {
   typename S::Real limit;       ///< of the tangential force [N]
   typename S::Real area;        ///< squared radius of the contact [m²]
   typename S::Real nx, ny, nz;  ///< from the first to the second
+  typename S::Mask touching;    ///< others hold from afar
 };
 
 /// Force on the first particle [N], and torque / radius on both; the second one gets the negative

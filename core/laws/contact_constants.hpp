@@ -13,6 +13,13 @@ struct Dashpot {
   double critical = 0.0;  ///< [sqrt(N/m)]
 };
 
+/// Liquid between two that have touched.
+struct Bridge {
+  double surface_tension = 0.0;  ///< sigma [N/m]
+  double contact_angle = 0.0;    ///< theta [rad]
+  double volume = 0.0;           ///< V [m³]; 0: there is none
+};
+
 /// What a deck says of a pair of materials; a law of contact reads its part.
 struct ContactConstants {
   // any law
@@ -45,6 +52,7 @@ struct ContactConstants {
   // adhesion
   double surface_energy = 0.0;    ///< gamma [J/m²]
   double cohesion_density = 0.0;  ///< [J/m³]
+  Bridge bridge;
 };
 
 /// How the tangential force of a Hertz contact follows a contact area that shrinks or grows.
@@ -54,7 +62,7 @@ enum class Tangential {
 };
 
 /// What pulls in Hertz contacts that stick.
-enum class Adhesion { None, Dmt, Sjkr, Sjkr2 };
+enum class Adhesion { None, Dmt, Sjkr, Sjkr2, Bridge };
 
 /// When a JKR contact that is pulled apart ends.
 enum class PullOff {

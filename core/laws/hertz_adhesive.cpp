@@ -32,8 +32,7 @@ double lens_integral(double reach, double radius, double d) {
 const std::array<LawKey, 2> HertzAdhesive::kMoreKeys{{
     {"surface_energy", Range::NotNegative, "J/m²", "0",
      "gamma: contacts pull with 4·pi·gamma·R (`contact.adhesion = \"dmt\"`) or with 3·pi·gamma·R "
-     "at "
-     "most (`contact.model = \"jkr\"`)",
+     "at most (`contact.model = \"jkr\"`)",
      [](Pair& p, double value) { p.surface_energy = value; }, -1, false, LawKey::Part::Dmt},
     {"cohesion_density", Range::NotNegative, "J/m³", "0",
      "contacts pull with it times their area; `contact.adhesion = \"sjkr\"` or `\"sjkr2\"`",

@@ -19,7 +19,9 @@ namespace barchan {
 /// dashpot, not F. Sources: Derjaguin, Muller & Toporov 1975, doi:10.1016/0021-9797(75)90018-1,
 /// friction as by Marshall 2009, doi:10.1016/j.jcp.2008.10.020; sjkr and sjkr2: LIGGGHTS.
 struct HertzAdhesive : HertzMindlin {
-  static constexpr bool kSticks = true;
+  static constexpr bool sticks_by(Adhesion adhesion) {
+    return adhesion == Adhesion::Dmt || adhesion == Adhesion::Sjkr || adhesion == Adhesion::Sjkr2;
+  }
 
   // ---- what a deck says of a pair of materials (hertz_adhesive.cpp)
 

@@ -9,6 +9,7 @@
 
 #include <barchan/core/laws/mixing.hpp>
 #include <barchan/core/laws/restitution.hpp>
+#include <barchan/core/laws/stable_step.hpp>
 
 namespace barchan {
 namespace {
@@ -152,7 +153,15 @@ void HertzMindlin::write(const Pair& p, const ContactRules& rules, double* row) 
 }
 
 double HertzMindlin::tangential_stiffness(const double* row, const Overlap& overlap) {
-  return row[Kt] * std::sqrt(overlap.depth / overlap.inverse_radius);
+  return row[Kt] * std::sqrt(area(row, overlap));
+}
+
+double HertzMindlin::stable_step_of(const double* row, double area, double mass, double spin_gain) {
+  const double a = std::sqrt(area), c = row[Damping] * std::sqrt(mass * a);
+  const double normal = barchan::stable_step(mass, 1.5 * row[Kn] * a, c);
+  if (row[Mu] == 0.0) return normal;
+  return std::min(normal, barchan::stable_step(mass / (1.0 + spin_gain), row[Kt] * a,
+                                               row[TangentialRatio] * c));
 }
 
 double HertzMindlin::energy(const double* row, const History& /*history*/, const Overlap& overlap,

@@ -30,7 +30,8 @@ namespace barchan {
 struct HertzMindlin {
   static constexpr const char* kName = "hertz";
   /// Disks of unit thickness have no Hertz law.
-  static constexpr bool kIsForDisks = false, kRolls = false, kSticks = false;
+  static constexpr bool kIsForDisks = false, kRolls = false;
+  static constexpr bool sticks_by(Adhesion adhesion) { return adhesion == Adhesion::None; }
 
   // ---- what a deck says of a pair of materials (hertz_mindlin.cpp)
 
@@ -79,9 +80,14 @@ struct HertzMindlin {
     return acts(p) ? 4.0 * p.shear_star / p.young_star * stiffness(p, impact) : 0.0;
   }
   static double tangential_stiffness(const double* row, const Overlap& overlap);
-  /// Squared radius of a contact [m²].
+  /// Of a pair that overlaps as it does now [s]. @param mass  reduced [kg]
+  static double stable_step(const double* row, const Overlap& overlap, double mass,
+                            double spin_gain) {
+    return stable_step_of(row, area(row, overlap), mass, spin_gain);
+  }
+  /// Squared radius of a contact, zero where it holds from afar [m²].
   static double area(const double* /*row*/, const Overlap& overlap) {
-    return overlap.depth / overlap.inverse_radius;
+    return overlap.depth > 0.0 ? overlap.depth / overlap.inverse_radius : 0.0;
   }
   template <class Add>
   static void for_each_motion(const Pair& p, const Impact& impact, double spin_gain, Add&& add) {
@@ -162,6 +168,8 @@ struct HertzMindlin {
                                                    typename S::Real& /*pressed*/) {}
 
  protected:
+  static double stable_step_of(const double* row, double area, double mass, double spin_gain);
+
   /// @tparam Law  this one, or one that sticks, which adds to fn
   template <class Law, class S>
   [[gnu::always_inline]] static inline typename S::Mask touch_of(
@@ -192,7 +200,8 @@ struct HertzMindlin {
     s[3] = S::where(touching, S::select(S::less(zero, c.kt), a, zero));
     pair.act(fn, h, out);
     out.size = S::abs(fn) + limit;
-    t = {pressed, c.kt * a, viscous, limit, pair.radius * overlap, pair.nx, pair.ny, pair.nz};
+    t = {pressed, c.kt * a, viscous, limit,   pair.radius * overlap,
+         pair.nx, pair.ny,  pair.nz, touching};
     return touching;
   }
 };

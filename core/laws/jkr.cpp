@@ -33,8 +33,7 @@ double adhesion_of(const Pair& p) {
 const std::array<LawKey, 1> Jkr::kMoreKeys{{
     {"surface_energy", LawKey::Range::NotNegative, "J/m²", "0",
      "gamma: contacts pull with 4·pi·gamma·R (`contact.adhesion = \"dmt\"`) or with 3·pi·gamma·R "
-     "at "
-     "most (`contact.model = \"jkr\"`)",
+     "at most (`contact.model = \"jkr\"`)",
      [](Pair& p, double value) { p.surface_energy = value; }},
 }};
 
@@ -72,10 +71,16 @@ void Jkr::write(const Pair& p, const ContactRules& rules, double* row) {
   row[Hold] = hold(rules);
 }
 
-double Jkr::area(const double* row, const Overlap& overlap) {
+// A contact that has come beyond the limit in the last step ends in the next one.
+Jkr::Circle Jkr::circle(const double* row, const Overlap& overlap) {
   const double r = cube_root<simd::Scalar>(1.0 / overlap.inverse_radius),
                a0 = row[Adhesion] * r * r;
-  const double s = root<simd::Scalar>(overlap.depth / (overlap.inverse_radius * a0 * a0));
+  const double load = overlap.depth / (overlap.inverse_radius * a0 * a0);
+  return {a0, root<simd::Scalar>(std::max(load, kLeast))};
+}
+
+double Jkr::area(const double* row, const Overlap& overlap) {
+  const auto [a0, s] = circle(row, overlap);
   return a0 * a0 * s * s * s * s;
 }
 
@@ -87,9 +92,7 @@ double Jkr::tangential_stiffness(const double* row, const Overlap& overlap) {
 double Jkr::energy(const double* row, const History& /*history*/, const Overlap& overlap,
                    const double* numbers) {
   if (row[Pull] == 0.0) return 0.0;
-  const double radius = 1.0 / overlap.inverse_radius;
-  const double r = cube_root<simd::Scalar>(radius), a0 = row[Adhesion] * r * r;
-  const double s = root<simd::Scalar>(overlap.depth * radius / (a0 * a0));
+  const auto [a0, s] = circle(row, overlap);
   const double s3 = s * s * s, s4 = s3 * s;
   const double normal = row[Pull] * a0 * a0 * s4 * (0.4 * s3 * s3 - 2.0 / 3.0 * s3 + 1.0 / 6.0);
   if (row[Kt] == 0.0) return normal;

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <array>
-#include <iterator>
+#include <limits>
+#include <optional>
 #include <string>
 
 #include <barchan/core/laws/hertz_mindlin.hpp>
@@ -75,6 +76,10 @@ struct Jkr : HertzMindlin {
   static double tangential_stiffness(const double* row, const Overlap& overlap);
   using HertzMindlin::tangential_stiffness;
   static double area(const double* row, const Overlap& overlap);
+  static double stable_step(const double* row, const Overlap& overlap, double mass,
+                            double spin_gain) {
+    return stable_step_of(row, area(row, overlap), mass, spin_gain);
+  }
   /// The radius of the contact says that it holds, with friction or without.
   static double energy(const double* row, const History& history, const Overlap& overlap,
                        const double* numbers);
@@ -122,9 +127,13 @@ struct Jkr : HertzMindlin {
     const Real zero = S::set(0.0);
     const Real d2 = p.dx * p.dx + p.dy * p.dy + p.dz * p.dz;
     const auto was_held = S::less(zero, s[3]);
-    if (!S::any(S::less(d2, p.reach * p.reach)) && !S::any(was_held)) {
+    const Real infinite = S::set(std::numeric_limits<double>::infinity());
+    const auto may_hold = S::less(d2, S::select(was_held, infinite, p.reach * p.reach));
+    if (!S::any(may_hold)) {
       s[0] = s[1] = s[2] = s[3] = zero;
-      return was_held;
+      out = PairForce<S, 3>{};
+      t = Touch<S, 3>{};
+      return may_hold;
     }
     const Real d = S::sqrt(d2), overlap = p.reach - d;
     const Pairing<S> pair(p, d);
@@ -133,6 +142,8 @@ struct Jkr : HertzMindlin {
     const auto holds = S::less(S::select(was_held, c.hold, zero), load);
     if (!S::any(holds)) {
       s[0] = s[1] = s[2] = s[3] = zero;
+      out = PairForce<S, 3>{};
+      t = Touch<S, 3>{};
       return holds;
     }
     const Real root_of_load = root<S>(load), s3 = root_of_load * square<S>(root_of_load);
@@ -152,7 +163,7 @@ struct Jkr : HertzMindlin {
     s[3] = S::where(holds, S::select(S::less(zero, c.pull), a, zero));
     pair.act(fn, h, out);
     out.size = (S::abs(fn) + adhesive) + limit;
-    t = {load_on_surfaces, c.hertz.kt * a, viscous, limit, a * a, pair.nx, pair.ny, pair.nz};
+    t = {load_on_surfaces, c.hertz.kt * a, viscous, limit, a * a, pair.nx, pair.ny, pair.nz, holds};
     return holds;
   }
 
@@ -161,6 +172,10 @@ struct Jkr : HertzMindlin {
   static constexpr double kLeastRoot2 = 0.30285343213868998;  ///< (1/6)^(2/3)
   static constexpr double kPeak = -0.13228342099734997;       ///< d at the peak
   static double hold(const ContactRules& rules);
+  struct Circle {
+    double without_load, root;  ///< a0 [m], s
+  };
+  static Circle circle(const double* row, const Overlap& overlap);
 };
 
 }  // namespace barchan

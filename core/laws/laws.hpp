@@ -3,6 +3,7 @@
 #include <type_traits>
 
 #include <barchan/core/laws/hertz_adhesive.hpp>
+#include <barchan/core/laws/hertz_bridge.hpp>
 #include <barchan/core/laws/hertz_mindlin.hpp>
 #include <barchan/core/laws/jkr.hpp>
 #include <barchan/core/laws/linear_spring.hpp>
@@ -17,9 +18,9 @@ struct LawList {
 
 /// The laws of contact, a file each. Kernels, tables, checks, walls and measures follow from this
 /// list. A run has one of them.
-using Laws =
-    LawList<LinearSpring, HertzMindlin, WithRolling<LinearSpring>, WithRolling<HertzMindlin>,
-            HertzAdhesive, WithRolling<HertzAdhesive>, Jkr, WithRolling<Jkr>>;
+using Laws = LawList<LinearSpring, HertzMindlin, WithRolling<LinearSpring>,
+                     WithRolling<HertzMindlin>, HertzAdhesive, WithRolling<HertzAdhesive>, Jkr,
+                     WithRolling<Jkr>, HertzBridge, WithRolling<HertzBridge>>;
 
 /// Whether a law is for disks, or for spheres.
 template <class Law, int Dim>

@@ -23,7 +23,8 @@ namespace barchan {
 /// doi:10.1680/geot.1979.29.1.47; the clamp is ours.
 struct LinearSpring {
   static constexpr const char* kName = "linear";
-  static constexpr bool kIsForDisks = true, kRolls = false, kSticks = false;
+  static constexpr bool kIsForDisks = true, kRolls = false;
+  static constexpr bool sticks_by(Adhesion adhesion) { return adhesion == Adhesion::None; }
 
   // ---- what a deck says of a pair of materials (linear_spring.cpp)
 
@@ -255,7 +256,7 @@ struct LinearSpring {
     out.ty = nz * fx - nx * fz;
     out.tz = nx * fy - ny * fx;
     out.size = S::abs(fn) + limit;
-    t = {S::abs(fn), c.kt, damp.ct, limit, (p.reach - d) / p.inverse_radius, nx, ny, nz};
+    t = {S::abs(fn), c.kt, damp.ct, limit, (p.reach - d) / p.inverse_radius, nx, ny, nz, touching};
     return touching;
   }
 

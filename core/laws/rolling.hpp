@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <iterator>
 #include <optional>
@@ -9,6 +10,7 @@
 #include <barchan/core/laws/contact_constants.hpp>
 #include <barchan/core/laws/history.hpp>
 #include <barchan/core/laws/law_key.hpp>
+#include <barchan/core/laws/stable_step.hpp>
 
 namespace barchan {
 
@@ -87,6 +89,16 @@ struct WithRolling : Base {
     if (p.mu_rolling > 0.0)
       add("rolling", impact.mass / spin_gain,
           p.kr + p.kr_ratio * Base::tangential_stiffness(p, impact), p.cr);
+  }
+  static double stable_step(const double* row, const Overlap& overlap, double mass,
+                            double spin_gain) requires(Base::kStiffens) {
+    const double *more = row + kFirst, kt = Base::tangential_stiffness(row, overlap);
+    const double base = Base::stable_step(row, overlap, mass, spin_gain);
+    if (more[RollingPart::Friction] == 0.0) return base;
+    return std::min(base, barchan::stable_step(
+                              mass / spin_gain,
+                              more[RollingPart::Stiffness] + more[RollingPart::StiffnessRatio] * kt,
+                              more[RollingPart::Damping]));
   }
   static double largest_force(const Pair& p, double share, double overlap, const Impact& impact) {
     return (1.0 + 2.0 * (p.mu_rolling + p.mu)) * Base::largest_force(p, share, overlap, impact);
@@ -230,10 +242,10 @@ struct WithRolling : Base {
       q = S::select(spinning, S::copysign(most, q), q);
       twist = S::select(spinning, (q - viscous) * inverse_or_zero<S>(twist_stiffness), twist);
     }
-    kept[0] = keep<S>(touching, c, x);
-    kept[1] = keep<S>(touching, c, y);
-    kept[2] = keep<S>(touching, c, z);
-    kept[3] = S::where(touching, S::select(S::less(S::set(0.0), c.twisting), twist, S::set(0.0)));
+    kept[0] = keep<S>(t.touching, c, x);
+    kept[1] = keep<S>(t.touching, c, y);
+    kept[2] = keep<S>(t.touching, c, z);
+    kept[3] = S::where(t.touching, S::select(S::less(S::set(0.0), c.twisting), twist, S::set(0.0)));
 
     const Real mx = radius * (t.ny * fz - t.nz * fy) + q * t.nx,
                my = radius * (t.nz * fx - t.nx * fz) + q * t.ny,

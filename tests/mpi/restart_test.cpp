@@ -73,7 +73,9 @@ std::vector<Scenario> restart_scenarios() {
           rolling_shear_flow(),
           rolling_hertz_gas(),
           rolling_column(),
-          sticky_gas(Adhesion::Sjkr2, true)};
+          sticky_gas(Adhesion::Sjkr2, true),
+          sticky_gas(Adhesion::Bridge, false),
+          attracting_gas(true)};
 }
 
 class RestartOf : public testing::TestWithParam<int> {
@@ -126,7 +128,7 @@ TEST_P(RestartOf, GivesTheSameBitsOnAnyNumberOfRanksAndThreads) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenarios, RestartOf, testing::Range(0, 20));
+INSTANTIATE_TEST_SUITE_P(Scenarios, RestartOf, testing::Range(0, 22));
 
 /// Restarts from every step of a stretch, so from before, at and after rebuilds, with and without
 /// checks in flight.

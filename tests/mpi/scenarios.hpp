@@ -321,11 +321,22 @@ inline Scenario rolling_hertz_gas() {
 inline Scenario sticky_gas(Adhesion adhesion, bool rolls) {
   Scenario s = hertz_gas();
   s.name = rolls ? "3D gas that sticks and rolls, periodic" : "3D gas that sticks, periodic";
-  if (rolls) make_rolling(s);
-  s.model.contacts.law = rolls ? 5 : 4;
+  s.model.contacts.law = adhesion == Adhesion::None ? 6 : adhesion == Adhesion::Bridge ? 8 : 4;
   s.model.contacts.adhesion = adhesion;
-  for (ContactConstants& c : s.model.contacts.constants)
+  for (ContactConstants& c : s.model.contacts.constants) {
     c.surface_energy = 40.0, c.cohesion_density = 4e4;
+    c.bridge = {10.0, 0.3, 1e-5};
+    if (rolls) c.mu_rolling = 0.1, c.cr = 0.2;
+  }
+  s.model.contacts.law += rolls ? 1 : 0;
+  s.model.contacts.twisting = rolls;
+  return s;
+}
+
+/// JKR contacts.
+inline Scenario attracting_gas(bool rolls) {
+  Scenario s = sticky_gas(Adhesion::None, rolls);
+  s.name = "3D gas that attracts itself, periodic";
   return s;
 }
 

@@ -274,6 +274,11 @@ TEST(SameBits, SpheresThatStick) {
   (void)expect_same_bits(sticky_gas(Adhesion::Sjkr, false), 12);
 }
 
+TEST(SameBits, SpheresThatHoldBeyondTouch) {
+  (void)expect_same_bits(attracting_gas(false), 10);
+  (void)expect_same_bits(sticky_gas(Adhesion::Bridge, true), 10);
+}
+
 TEST(SameBits, ElasticSpheresThatMeetAtCuts) {
   (void)expect_same_bits(hertz_gas(), 8);
 }

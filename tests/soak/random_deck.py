@@ -66,7 +66,9 @@ class RandomDeck:
             self.mass *= 4 / 3 * 0.6 * RADIUS
         self.is_hertz = self.dimension == 3 and rng.random() < 0.4
         self.rolls = rng.random() < 0.4
-        self.adhesion = rng.choice((None, None, "dmt", "sjkr", "sjkr2")) if self.is_hertz else None
+        self.is_jkr = self.is_hertz and rng.random() < 0.25
+        sticks = self.is_hertz and not self.is_jkr
+        self.adhesion = rng.choice((None, None, "dmt", "sjkr", "sjkr2", "bridge")) if sticks else None
         kind = rng.choice(("normal_damping", "normal_damping_rate", "restitution"))
         for name in self.materials:
             kn = 10 ** rng.uniform(4, 5.5)
@@ -79,8 +81,12 @@ class RandomDeck:
             constants = {"restitution": 0.4} if self.is_hertz else {
                 "normal_stiffness": self.stiffest, "normal_damping": 0.1 * math.sqrt(self.stiffest * self.mass)}
             self.table("[[pair]]", materials='["a", "b"]', friction=0.2, **constants)
+        if self.adhesion == "bridge":
+            self.table("[[bridge]]", materials=f'["a", "{rng.choice(self.materials)}"]', contact_angle=rng.choice((None, 40.0)),
+                       surface_tension=1e-5 * self.stiffest, volume=(rng.uniform(0.05, 0.3) * RADIUS) ** 3)
         self.table("[contact]", no_tension=rng.choice(("true", "false")),
-                   model='"hertz"' if self.is_hertz else None,
+                   model=('"jkr"' if self.is_jkr else '"hertz"') if self.is_hertz else None,
+                   pull_off=rng.choice((None, '"peak"')) if self.is_jkr else None,
                    tangential=rng.choice((None, '"mindlin-displacement"')) if self.is_hertz else None,
                    rolling='"spring"' if self.rolls else None,
                    adhesion=f'"{self.adhesion}"' if self.adhesion else None)
@@ -99,7 +105,7 @@ class RandomDeck:
         rng = self.rng
         return {"young_modulus": 5.5 * kn / RADIUS, "poisson_ratio": rng.choice((-0.2, 0.0, 0.3, 0.5)),
                 "restitution": rng.uniform(0.3, 1.0), "tangential_damping_ratio": rng.choice((None, 0.2)),
-                "surface_energy": 2e-6 * kn if self.adhesion == "dmt" else None,
+                "surface_energy": 2e-6 * kn if self.adhesion == "dmt" or self.is_jkr else None,
                 "cohesion_density": 0.1 * kn if self.adhesion in ("sjkr", "sjkr2") else None}
 
     def draw_bonds(self):

@@ -286,6 +286,29 @@ INSTANTIATE_TEST_SUITE_P(
               "model = \"hertz\"",
               "model = \"hertz\"\nadhesion = \"sjkr2\"",
               {":10:12:", "no pair of materials has cohesion_density"}},
+        Wrong{"BridgeOfNobody",
+              "model = \"hertz\"",
+              "model = \"hertz\"\nadhesion = \"bridge\"",
+              {":10:12:", "there is no [[bridge]]", "surface_tension and volume"}},
+        Wrong{"BridgeWithoutAdhesion",
+              "model = \"hertz\"",
+              "model = \"hertz\"\n[[bridge]]\nmaterials = [\"glass\", \"sand\"]\n"
+              "surface_tension = 0.07\nvolume = 1e-12",
+              {"no place without contact.adhesion = \"bridge\""}},
+        Wrong{"BridgeTwice",
+              "model = \"hertz\"",
+              "model = \"hertz\"\nadhesion = \"bridge\"\n"
+              "[[bridge]]\nmaterials = [\"glass\", \"sand\"]\nsurface_tension = 0.07\n"
+              "volume = 1e-12\n"
+              "[[bridge]]\nmaterials = [\"sand\", \"glass\"]\nsurface_tension = 0.07\n"
+              "volume = 1e-12",
+              {"a second [[bridge]] of 'sand' and 'glass'"}},
+        Wrong{"BridgeThatDoesNotWet",
+              "model = \"hertz\"",
+              "model = \"hertz\"\nadhesion = \"bridge\"\n[[bridge]]\n"
+              "materials = [\"glass\", \"sand\"]\nsurface_tension = 0.07\n"
+              "contact_angle = 90.0\nvolume = 1e-12",
+              {"contact_angle = 90", "below 90"}},
         Wrong{"JkrOfNobody",
               "model = \"hertz\"",
               "model = \"jkr\"",

@@ -40,8 +40,8 @@ TEST(NotModelled, IsCalledThatInsteadOfAMisspeltKey) {
   const std::vector<Case> cases{
       {"twisting_friction", "twisting by constants of its own is"},
       {"torsion_stiffness", "twisting by constants of its own is"},
-      {"surface_tension", "adhesion by liquid bridges or van der Waals forces at a distance is"},
-      {"liquidVolume", "adhesion by liquid bridges or van der Waals forces at a distance is"},
+      {"suction", "adhesion by van der Waals forces at a distance, or by liquid that flows, is"},
+      {"liquidVolume", "adhesion by van der Waals forces at a distance, or by liquid that"},
       {"shear_modulus", "elasticity by any moduli but"},
       {"contact_law", "any law of contact but"},
       {"temperature", "heat is"},
@@ -83,6 +83,8 @@ TEST(NotModelled, LeavesSlipsToTheNearestKey) {
   expect_parts(error_of({{"friction = 0.5", "frictoin = 0.5"}}), {"did you mean 'friction'?"});
   expect_parts(error_of({{"friction = 0.5", "friction_angle = 30.0"}}), {"known: name, density"});
   expect_parts(error_of({{"max_time = 1.0", "omega = 1.0"}}), {"omega is a key of [[particles]]"});
+  expect_parts(error_of({{"friction = 0.5", "surface_tension = 0.07"}}),
+               {"is a key of [[bridge]]"});
 }
 
 TEST(NotModelled, IsNoKeyOrChoiceOfTheDeck) {

@@ -177,6 +177,15 @@ TEST(Jkr, ForceIsTheSlopeOfItsEnergy) {
   }
 }
 
+// Measures come between steps: what has just gone too far is still in the history.
+TEST(Jkr, HasAnEnergyWhereverItIsMeasured) {
+  Pulled c({});
+  (void)c.force(0.1 * c.scale());
+  for (const double d : {-0.5, kPullLimit, -0.1, 0.0, 0.3})
+    EXPECT_TRUE(std::isfinite(
+        Jkr::energy(c.row, Jkr::kHistory<3>, {d * c.scale(), 1.0 / Pulled::kRadius}, c.history)));
+}
+
 TEST(Jkr, HoldsAsFarAsItsRangeSays) {
   for (const PullOff pull_off : {PullOff::Limit, PullOff::Peak}) {
     const ContactTable contacts =
