@@ -87,6 +87,7 @@ Simulation::EngineOf<Dim>::~EngineOf() {
 
 template <int Dim>
 std::int64_t Simulation::EngineOf<Dim>::run(std::int64_t num_steps) {
+  begin_account();
   const std::int64_t begin = now_ns();
   std::int64_t done = 0;
   stopped_ = stopped_ && num_steps == 0;
@@ -252,9 +253,23 @@ int Simulation::EngineOf<Dim>::steps_in_a_go(std::int64_t most) {
 
 template <int Dim>
 Measures Simulation::EngineOf<Dim>::measure() {
+  begin_account();
   const Measures m = barchan::measure(parts_);
   watch_.see_overlap(m.max_overlap_share);
   return m;
+}
+
+/// At the first step that there is one for, of a restart from a run without one, too.
+template <int Dim>
+void Simulation::EngineOf<Dim>::begin_account() {
+  if (!parts_.world.accounts || std::exchange(has_account_, true)) return;
+  const Measures m = barchan::measure(parts_);
+  if (m.works[EnergyWorks::Begun].value() != 0.0) return;
+  if (!communicator_.is_root()) return;
+  ExactSum walls;
+  for (const WallState& wall : parts_.world.walls) walls.add(wall.work);
+  parts_.strip.lane(0).brick.works.begin(m.kinetic, m.elastic, m.bonds_elastic, walls);
+  if (step_ > 0) notes_.add(step_, "the account of energy begins here");
 }
 
 template <int Dim>

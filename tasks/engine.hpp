@@ -79,6 +79,7 @@ class Simulation::Engine {
   Stages stages_{model_};
   Population population_;
   bool stopped_ = false;
+  bool has_account_ = false;    ///< of energy, where one is kept
   bool is_over_ = false;        ///< the last stage is
   bool is_in_step_ = false;     ///< or one was not ended
   std::exception_ptr failure_;  ///< what run() threw
@@ -118,6 +119,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
     generation_.advance();
   }
   Measures measure() override;
+  void begin_account();
   std::uint64_t digest() override { return barchan::digest(parts_.strip); }
   [[nodiscard]] std::span<const WallState> walls() const override { return parts_.world.walls; }
   [[nodiscard]] Timings timings() const override;

@@ -42,10 +42,13 @@ void restore_totals(Lane<Dim>& first, std::span<const std::int64_t> totals) {
   first.brick.bonds.set_num_broken(totals[0]);
   first.brick.wall_sums.resize(first.brick.world->walls.size());
   auto digit = totals.begin() + 1;
-  for (WallSums& sums : first.brick.wall_sums) {
-    std::copy_n(digit, ExactSum::kDigits, sums.work.digits().begin());
+  const auto take = [&](ExactSum& sum) {
+    std::copy_n(digit, ExactSum::kDigits, sum.digits().begin());
     digit += ExactSum::kDigits;
-  }
+  };
+  for (WallSums& sums : first.brick.wall_sums) take(sums.work);
+  if (!first.brick.world->accounts) return;
+  for (ExactSum& sum : first.brick.works.sums) take(sum);
 }
 
 /// @return particles. Collective.

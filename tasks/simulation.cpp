@@ -158,6 +158,14 @@ void Simulation::apply_forces(const std::function<Vec3(const OwnedParticle&)>& f
 void Simulation::clear_forces() {
   between_steps("clear_forces").clear_forces();
 }
+EnergyBudget Simulation::energy_budget(const Measures& measured) const {
+  if (!model().output.energy)
+    throw InputError("no account of energy is kept", "set output.energy = true before the run");
+  double work = 0.0;
+  for (const WallState& wall : walls()) work += wall.work;
+  return budget_of(measured, work);
+}
+
 Measures Simulation::measure() {
   return between_steps("measure").measure();
 }

@@ -203,6 +203,9 @@ class Simulation {
 
   /// Energies, contacts, largest overlap, momentum; over all ranks. Collective.
   [[nodiscard]] Measures measure();
+  /// Where energy has come from and gone to, of what measure() gave at this step. Local.
+  /// Errors: InputError without Model::output.energy
+  [[nodiscard]] EnergyBudget energy_budget(const Measures& measured) const;
   /// Walls at this step; force, torque and work as of the last measure(). Local.
   [[nodiscard]] std::span<const WallState> walls() const;
   /// Digest of the state of all ranks (docs/determinism.md). Collective.

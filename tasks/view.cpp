@@ -19,8 +19,12 @@ OwnedParticle particle(const ParticleStore<Dim>& store, std::int32_t i) {
 }
 
 /// Sums and largest values over all ranks, exact whatever their order. Collective.
-void reduce(const Communicator& communicator, Measures& m, std::vector<WallSums>& walls) {
-  std::vector<ExactSum*> sums{&m.kinetic, &m.elastic, &m.gravitational};
+void reduce(const Communicator& communicator, bool accounts, Measures& m,
+            std::vector<WallSums>& walls) {
+  std::vector<ExactSum*> sums{&m.kinetic, &m.elastic, &m.gravitational, &m.bonds_elastic};
+  if (accounts) {
+    for (ExactSum& work : m.works.sums) sums.push_back(&work);
+  }
   for (ExactSum& p : m.momentum) sums.push_back(&p);
   for (WallSums& w : walls) {
     for (ExactSum& f : w.force) sums.push_back(&f);
@@ -113,7 +117,7 @@ Measures measure(RunParts<Dim>& run) {
     const auto sums = measure_walls(lane.brick);
     for (std::size_t w = 0; w < sums.size(); ++w) walls[w].add(sums[w]);
   }
-  reduce(run.communicator, all, walls);
+  reduce(run.communicator, run.world.accounts, all, walls);
   for (std::size_t w = 0; w < walls.size(); ++w) {
     WallState& wall = run.world.walls[w];
     for (int c = 0; c < 3; ++c) {

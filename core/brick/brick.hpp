@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <barchan/core/base/side.hpp>
+#include <barchan/core/brick/energy_works.hpp>
 #include <barchan/core/brick/passage.hpp>
 #include <barchan/core/brick/world.hpp>
 #include <barchan/core/links/bonds.hpp>
@@ -57,6 +58,7 @@ struct Brick {
   BondedPairs bonded;
   WallContacts<Dim> walls;
   std::vector<WallSums> wall_sums;  ///< of all walls the work since the start
+  EnergyWorks works;                ///< since the start; kept where World::accounts
 
   // the last step
   RowSpeeds speeds;          ///< of the owned rows

@@ -160,12 +160,13 @@ void save(const Brick<Dim>& brick, CheckpointShare& share) {
   share.outruns.push_back(
       std::max(brick.outrun, outrun_share(distance2_of_last_step(brick), brick.skin)));
   share.totals.push_back(brick.bonds.num_broken());
-  for (std::size_t w = 0; w < brick.world->walls.size(); ++w) {
-    ExactSum work;
-    if (w < brick.wall_sums.size()) work = brick.wall_sums[w].work;
-    work.carry();
-    share.totals.insert(share.totals.end(), work.digits().begin(), work.digits().end());
-  }
+  const auto put = [&](ExactSum sum) {
+    sum.carry();
+    share.totals.insert(share.totals.end(), sum.digits().begin(), sum.digits().end());
+  };
+  for (std::size_t w = 0; w < brick.world->walls.size(); ++w)
+    put(w < brick.wall_sums.size() ? brick.wall_sums[w].work : ExactSum());
+  for (const ExactSum& sum : brick.works.sums) put(sum);
 }
 
 template <int Dim>

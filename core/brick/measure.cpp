@@ -11,6 +11,8 @@ void Measures::add(const Measures& other) {
   kinetic.add(other.kinetic);
   elastic.add(other.elastic);
   gravitational.add(other.gravitational);
+  bonds_elastic.add(other.bonds_elastic);
+  works.add(other.works);
   for (int c = 0; c < 3; ++c) momentum[c].add(other.momentum[c]);
   contacts += other.contacts;
   bonds += other.bonds;
@@ -29,14 +31,13 @@ void measure_motion(const ParticleStore<Dim>& store, const Vec3& gravity, Measur
     const double im = store.inverse_mass(i);
     if (im == 0.0) continue;
     const double mass = 1.0 / im;
-    double v2 = 0.0, u2 = 0.0, height = 0.0;
+    double v2 = 0.0, height = 0.0;
     for (int c = 0; c < Dim; ++c) {
       v2 += store.v(i)[c] * store.v(i)[c];
       height -= gravity[c] * store.x(i)[c];
       m.momentum[c].add(mass * store.v(i)[c]);
     }
-    for (int c = 0; c < kSpins<Dim>; ++c) u2 += store.u(i)[c] * store.u(i)[c];
-    m.kinetic.add(0.5 * mass * (v2 + u2 / Layout<Dim>::kSpinGain));
+    m.kinetic.add(kinetic_energy(store, i));
     m.gravitational.add(mass * height);
     m.max_speed = std::max(m.max_speed, std::sqrt(v2));
     m.max_inverse_mass = std::max(m.max_inverse_mass, im);
@@ -109,12 +110,35 @@ Measures measure(const Brick<Dim>& brick, const Vec3& gravity) {
   measure_wall_contacts(brick, m);
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(brick.bonds.bonds().size()); ++b) {
     if (!brick.counts_bond(b)) continue;
-    m.elastic.add(
-        brick.bonds.energy(b, brick.store, brick.world->bond_laws, brick.world->grid.box()));
+    const double energy =
+        brick.bonds.energy(b, brick.store, brick.world->bond_laws, brick.world->grid.box());
+    m.elastic.add(energy);
+    m.bonds_elastic.add(energy);
     ++m.bonds;
   }
   m.broken_bonds = brick.bonds.num_broken();
+  m.works = brick.works;
   return m;
+}
+
+EnergyBudget budget_of(const Measures& m, double wall_work) {
+  using E = EnergyWorks;
+  const auto of = [&](E::Part part) { return m.works[part].value(); };
+  const double bonds = m.bonds_elastic.value(), contacts = m.elastic.value() - bonds;
+  EnergyBudget b;
+  b.wall_work = wall_work - of(E::StartWalls);
+  b.gravity_work = of(E::Gravity);
+  b.caller_work = of(E::Callers);
+  b.contact_loss = b.wall_work - of(E::Contacts) - (contacts - of(E::StartContacts));
+  b.bond_loss = -of(E::Bonds) - (bonds - of(E::StartBonds));
+  b.damping_loss = -of(E::LocalDamping);
+  b.departed = of(E::Departed);
+  const double there = m.kinetic.value() + m.elastic.value() -
+                       (of(E::StartKinetic) + of(E::StartContacts) + of(E::StartBonds));
+  const double given = b.wall_work + b.gravity_work + b.caller_work;
+  const double taken = b.contact_loss + b.bond_loss + b.damping_loss + b.departed;
+  b.error = there - (given - taken);
+  return b;
 }
 
 template <int Dim>

@@ -3,12 +3,14 @@
 #include <cstdint>
 
 #include <barchan/core/base/exact_sum.hpp>
+#include <barchan/core/brick/energy_works.hpp>
 
 namespace barchan {
 
 /// Sums over a brick, added over bricks and ranks in any order.
 struct Measures {
   ExactSum kinetic, elastic, gravitational;  ///< [J]
+  ExactSum bonds_elastic;                    ///< the part of `elastic` that bonds have [J]
   ExactSum momentum[3];                      ///< [N·s]
   std::int64_t contacts = 0;                 ///< touching pairs without a bond, each once
   std::int64_t bonds = 0, broken_bonds = 0;
@@ -16,8 +18,25 @@ struct Measures {
   double max_overlap_share = 0.0;  ///< of the smaller radius
   double max_speed = 0.0;          ///< [m/s]
   double max_inverse_mass = 0.0;   ///< of the lightest particle [1/kg]
+  EnergyWorks works;               ///< since the start; empty without output.energy
   void add(const Measures& other);
 };
+
+/// Where energy has come from and gone to since the account began (output.energy) [J]. Losses are
+/// positive where energy goes.
+struct EnergyBudget {
+  double wall_work = 0.0, gravity_work = 0.0, caller_work = 0.0;  ///< on particles
+  /// Dashpots, sliding and rolling, and what forms and breaks where surfaces or liquid pull: what
+  /// contacts have taken and do not hold.
+  double contact_loss = 0.0;
+  double bond_loss = 0.0;     ///< dashpots, and what broken bonds held
+  double damping_loss = 0.0;  ///< local damping
+  double departed = 0.0;      ///< kinetic energy of particles that have left
+  /// Energy that is there, and that should be by all the others.
+  double error = 0.0;
+};
+/// @param wall_work  of all walls since the start
+[[nodiscard]] EnergyBudget budget_of(const Measures& m, double wall_work);
 
 /// How far particles have come since the last rebuild, and how fast they are. A distance beyond
 /// half the skin that was reached between a check and the rebuild it led to is told by the next

@@ -42,6 +42,11 @@ LinkCounts Rebuild<Dim>::remove(std::span<const std::int64_t> ids) {
   const auto is_removed = [this](std::int32_t row) {
     return leavers_.is_removed(brick_.store.id[static_cast<std::size_t>(row)]);
   };
+  if (brick_.world->accounts) {
+    for (std::int32_t i = 0; i < brick_.store.num_owned; ++i) {
+      if (is_removed(i)) brick_.works[EnergyWorks::Departed].add(kinetic_energy(brick_.store, i));
+    }
+  }
   LinkCounts gone;
   brick_.for_each_counted([&](const PairList& list, const PairBlock& block) {
     block.for_each_worked_on(list, [&](std::size_t k, std::int32_t i, std::int32_t j) {

@@ -72,6 +72,7 @@ void Step<Dim>::begin(const StepFrame& frame) {
   brick_.wall_sums.resize(world.walls.size());
   if (++num_steps_ % kCarryEvery == 0) {
     for (WallSums& sums : brick_.wall_sums) sums.work.carry();
+    for (ExactSum& sum : brick_.works.sums) sum.carry();
   }
   if (!brick_.bonds.empty()) compute_bonds(BondSet<Dim>::Owned);
 }
@@ -102,18 +103,38 @@ void Step<Dim>::add_extras(Rows rows) {
   ParticleStore<Dim>& store = brick_.store;
   if (frame_.has_moved(brick_.world->dt))
     PassageWatch<Dim>(*brick_.world, store, brick_.passage).look_at(brick_.walls.list(), rows);
+  const auto book = [&](EnergyWorks::Part part) {
+    if (brick_.world->accounts) account_.book(store, part);
+  };
   store.start_extra(rows.begin, rows.end);
   brick_.bonds.add_to_rows(store, rows.begin, rows.end);
+  book(EnergyWorks::Bonds);
   brick_.walls.add_to_rows(store, wall_frame(frame_), brick_.wall_sums, rows.begin, rows.end);
+  book(EnergyWorks::Contacts);
   if (store.external.empty()) return;
   constexpr auto kForce = std::size_t{Layout<Dim>::kForce};
   const auto from = static_cast<std::size_t>(rows.begin) * kForce,
              to = static_cast<std::size_t>(rows.end) * kForce;
   for (std::size_t c = from; c < to; ++c) store.extra[c - from] += store.external[c];
+  book(EnergyWorks::Callers);
 }
 
 template <int Dim>
 void Step<Dim>::finish_rows(Rows rows, bool has_extras) {
+  const World<Dim>& world = *brick_.world;
+  if (!world.accounts) {
+    advance_rows(rows, has_extras);
+  } else {
+    account_.begin(brick_.store, rows, world.grain.rounder());
+    advance_rows(rows, has_extras);
+    account_.end(brick_.store, frame_.kick, frame_.gravity, frame_.local_damping != 0.0,
+                 brick_.works);
+  }
+  if (wraps_) wrap_rows(rows);
+}
+
+template <int Dim>
+void Step<Dim>::advance_rows(Rows rows, bool has_extras) {
   const World<Dim>& world = *brick_.world;
   ParticleStore<Dim>& store = brick_.store;
   const bool has_more = has_extras || !store.external.empty();
@@ -135,7 +156,6 @@ void Step<Dim>::finish_rows(Rows rows, bool has_extras) {
   const RowSpeeds speeds = advance(job);
   brick_.speeds.add(speeds);
   if (speeds.is_beyond) judge_speeds(brick_, rows);
-  if (wraps_) wrap_rows(rows);
 }
 
 /// At fixed steps, for what a position loses around the end of the box is part of the state.

@@ -43,6 +43,7 @@ class Step {
   [[nodiscard]] PairJob job(PairList& list, PairBlock& block, double travel);
   void run_block(RowBlock& block);
   void finish_rows(Rows rows, bool has_extras);
+  void advance_rows(Rows rows, bool has_extras);
   void add_extras(Rows rows);
   void wrap_rows(Rows rows);
   void compute_bonds(typename BondSet<Dim>::Group group);
@@ -55,6 +56,7 @@ class Step {
   bool looks_ = false;          ///< for passages, in this step
   std::int32_t rows_done_ = 0;  ///< of those away from bands
   std::int64_t num_steps_ = 0;
+  WorkAccount<Dim> account_;
 };
 
 /// After rows have come and gone, and lists have another skin: what is quick.

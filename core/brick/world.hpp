@@ -38,7 +38,8 @@ struct World {
   double range = 0.0;  ///< beyond touch, up to which the law's contacts may hold [m]
   /// Half of the smallest radius: where nothing moves farther in a step, no contact is skipped [m].
   double quick_travel = std::numeric_limits<double>::infinity();
-  double dt = 0.0;  ///< [s]
+  double dt = 0.0;        ///< [s]
+  bool accounts = false;  ///< for where energy goes (energy_works.hpp)
   std::int64_t num_particles = 0;
 
   /// In a step, with lists of a skin. Of two that move by more each, lists may lack one that was

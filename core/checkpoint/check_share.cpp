@@ -117,8 +117,7 @@ void check_share(const CheckpointShare& share, const ShareLimits& limits, const 
   if (limits.dimension == 3) check_particles<3>(share, limits, check);
   const Widths w = limits.dimension == 2 ? widths<2>(limits.law) : widths<3>(limits.law);
   check_links(share, w, limits, check);
-  check.size(CheckpointColumn::Totals, share.totals.size(),
-             1 + limits.num_walls * ExactSum::kDigits);
+  check.size(CheckpointColumn::Totals, share.totals.size(), num_totals(limits.num_walls));
   check.totals(share.totals);
 }
 

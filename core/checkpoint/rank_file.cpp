@@ -22,7 +22,7 @@ static_assert(std::endian::native == std::endian::little,
               "checkpoints are written as memory has them");
 
 constexpr std::array<char, 8> kMagic{'b', 'a', 'r', 'c', 'h', 'a', 'n', '\n'};
-constexpr std::uint32_t kVersion = 6;
+constexpr std::uint32_t kVersion = 7;
 constexpr std::size_t kAlign = 64;
 
 struct DiskHeader {
@@ -209,7 +209,7 @@ std::span<const std::byte> RankFileView::state() const {
 
 CheckpointShare RankFileView::share(const ShareLimits& limits) const {
   CheckpointShare share;
-  std::vector<std::int64_t> totals(1 + limits.num_walls * ExactSum::kDigits, 0);
+  std::vector<std::int64_t> totals(num_totals(limits.num_walls), 0);
   for (const Block& block : blocks_) {
     const auto bytes = bytes_.subspan(block.offset, block.bytes);
     for_each_column(share, [&](CheckpointColumn column, auto& values) {

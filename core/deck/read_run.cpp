@@ -120,6 +120,7 @@ void read_options(const TableReader& root, Model& model) {
   model.output.series_every = output.integer("series_every");
   model.output.snapshots_every = output.integer("snapshots_every");
   model.output.picture = output.boolean("picture");
+  model.output.energy = output.boolean("energy");
 
   const TableReader checkpoint(*node("checkpoint"), root.dimension(), "[checkpoint]");
   model.checkpoint.every_steps = checkpoint.integer("every_steps");

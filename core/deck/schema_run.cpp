@@ -68,6 +68,8 @@ constexpr KeySpec kRunKeys[] = {
     {"[output]", "snapshots_every", T::NonNegativeInteger, "steps", "0",
      "between snapshots; 0 = only the first and the last state"},
     {"[output]", "picture", T::Boolean, "", "true", "draw the last state as `picture.png`"},
+    {"[output]", "energy", T::Boolean, "", "false",
+     "keep an account of where energy comes from and goes, in `series.csv`"},
 
     {"[checkpoint]", "every_steps", T::NonNegativeInteger, "steps", "0",
      "between checkpoints; 0 = not by steps"},

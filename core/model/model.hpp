@@ -130,6 +130,7 @@ struct OutputSpec {
   std::int64_t series_every = 0;     ///< steps; 0 = a hundredth of the run
   std::int64_t snapshots_every = 0;  ///< steps; 0 = only first and last
   bool picture = true;               ///< final state as picture.png
+  bool energy = false;               ///< keep an account of where energy goes
 };
 
 struct CheckpointSpec {

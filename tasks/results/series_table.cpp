@@ -33,6 +33,10 @@ std::vector<std::string> columns_of(const Model& model, const std::vector<Ring>&
     columns.push_back(ring.name + "_diameter_x");
     columns.push_back(ring.name + "_diameter_y");
   }
+  if (model.output.energy) {
+    columns.insert(columns.end(), {"wall_work", "gravity_work", "caller_work", "contact_loss",
+                                   "bond_loss", "damping_loss", "departed_energy", "energy_error"});
+  }
   return columns;
 }
 
@@ -52,6 +56,11 @@ Cells values_of(const Simulation& simulation, const Measures& m, const Cells& di
     for (int c = 0; c < model.dimension; ++c) values.emplace_back(walls[w].point[c]);
   }
   values.insert(values.end(), diameters.begin(), diameters.end());
+  if (model.output.energy) {
+    const EnergyBudget b = simulation.energy_budget(m);
+    values.insert(values.end(), {b.wall_work, b.gravity_work, b.caller_work, b.contact_loss,
+                                 b.bond_loss, b.damping_loss, b.departed, b.error});
+  }
   return values;
 }
 

@@ -53,17 +53,22 @@ std::int64_t middle_of(const Scenario& s) {
   return s.num_steps / 2 + 7;
 }
 
+Scenario with_energy(Scenario s) {
+  s.model.output.energy = true;
+  return s;
+}
+
 std::vector<Scenario> restart_scenarios() {
-  return {soil_with_ring_and_plate(),
-          column_collapse(),
+  return {with_energy(soil_with_ring_and_plate()),
+          with_energy(column_collapse()),
           gas(2, {true, true, false}, 3.0, "2D gas, all periodic"),
           gas(3, {true, false, true}, 3.0, "3D gas, periodic"),
           moving_walls(),
           rough_bed(),
-          pushed_by_caller(),
+          with_energy(pushed_by_caller()),
           breaking_plate(2),
           with_skin(breaking_plate(3), 0.04),
-          with_skin(expansion(), 0.04),
+          with_energy(with_skin(expansion(), 0.04)),
           two_particles(true),
           many_laws(3, true),
           strips_along_y(),

@@ -92,6 +92,11 @@ inline Words words_of(Simulation& sim) {
     }
     add(w.work);
   }
+  if (!sim.model().output.energy) return words;
+  const EnergyBudget b = sim.energy_budget(m);
+  for (const double value : {b.gravity_work, b.caller_work, b.contact_loss, b.bond_loss,
+                             b.damping_loss, b.departed, b.error})
+    add(value);
   return words;
 }
 
