@@ -84,7 +84,7 @@ class Loader {
   /// Particles a slab, and the totals. Collective.
   void count() {
     const auto num_slabs = static_cast<std::size_t>(grid_.num_slabs());
-    std::vector<std::int64_t> sums(num_slabs + 1 + limits_.num_walls * ExactSum::kDigits, 0);
+    std::vector<std::int64_t> sums(num_slabs + num_totals(limits_.num_walls), 0);
     agree(communicator_, [&] {
       const auto stride = static_cast<std::size_t>(communicator_.size());
       for (auto r = static_cast<std::size_t>(communicator_.rank()); r < num_files(); r += stride)

@@ -31,6 +31,12 @@ SOIL = {"kind": "soil2d", "source": "soil2d-5k.csv", "box": ((0, 0, -0.1), (10, 
 PACK = {"kind": "pack3d", "source": "pack3d-30k.csv", "box": ((0, 0, 0), (30, 30, 43.5)), "energy_tolerance": 0.1}
 CHUTE = {"kind": "chute3d", "source": "chute3d-32k.csv", "box": ((0, 0, -1), (40, 20, 60)), "bed_below": 0.0}
 
+
+def pack(law):
+    """The packing by another law; LIGGGHTS has no such input."""
+    return {**PACK, "kind": f"pack3d_{law}"}
+
+
 CASES = [
     Case("soil2d-5k", "2D soil, 5,000 disks", steps=10000, **SOIL),
     Case("soil2d-10k", "2D soil, 10,000 disks", steps=5000, copies=(2, 1), **SOIL),
@@ -38,6 +44,9 @@ CASES = [
     Case("pack3d-30k", "3D packing, 30,000 spheres", steps=1000, **PACK),
     Case("pack3d-120k", "3D packing, 120,000 spheres", steps=300, copies=(2, 2), **PACK),
     Case("pack3d-1m", "3D packing, 1,080,000 spheres", steps=60, copies=(6, 6), **PACK),
+    Case("pack3d-30k-hertz", "3D packing, 30,000 spheres, Hertz–Mindlin", steps=500, **pack("hertz")),
+    Case("pack3d-30k-rolling", "3D packing, 30,000 spheres, with rolling and twisting", steps=500, **pack("rolling")),
+    Case("pack3d-30k-jkr", "3D packing, 30,000 spheres, JKR", steps=500, **pack("jkr")),
     Case("chute3d-32k", "3D chute flow, 32,000 spheres", steps=1000, **CHUTE),
 ]
 USUAL = ["soil2d-5k", "soil2d-100k", "pack3d-30k", "pack3d-120k", "chute3d-32k"]
@@ -70,7 +79,7 @@ def prepare(case, data, work):
 
 def settings(case, inputs):
     """What differs from the deck as it stands."""
-    dimension = 2 if case.kind == "soil2d" else 3
+    dimension = 2 if case.kind.startswith("soil2d") else 3
     lists = {"particles.1.path": f'"{inputs.csv}"',
              "domain.hi": [float(value) for value in case.hi[:dimension]]}
     if case.kind == "soil2d":

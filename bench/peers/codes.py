@@ -24,6 +24,10 @@ class Barchan:
         self.path, self.vector, self.arguments = path, vector, arguments
         self.name = "barchan" if vector == "auto" else f"barchan {vector}"
 
+    def has(self, _case):
+        """Whether there are inputs for it."""
+        return True
+
     def run(self, case, inputs, ranks, steps, work):
         out = os.path.join(work, case.name, "barchan.out")
         arguments = ["--steps", str(steps), "--vector", self.vector, *self.arguments]
@@ -38,6 +42,10 @@ class Peer:
 
     def __init__(self, name, folder, path, skin):
         self.name, self.folder, self.path, self.skin = name, folder, path, skin
+
+    def has(self, case):
+        """Whether there are inputs for it."""
+        return os.path.exists(cases.script(case, self.folder))
 
     def run(self, case, inputs, ranks, steps, work):
         data = inputs.lammps if self.folder == "lammps" else inputs.liggghts

@@ -44,6 +44,22 @@ void measure_motion(const ParticleStore<Dim>& store, const Vec3& gravity, Measur
   }
 }
 
+/// Of two that do not touch: whether the next step would find that the law still holds them.
+template <int Dim>
+bool holds_from_afar(const LawTable& laws, const double* row, const Overlap& overlap,
+                     const double* history) {
+  const ContactLawIn<Dim>& law = laws.law().template in<Dim>();
+  typename ContactLawIn<Dim>::State apart{};
+  apart.dx = overlap.reach - overlap.depth;
+  apart.reach = overlap.reach;
+  apart.inverse_mass = 1.0;
+  apart.inverse_radius = overlap.inverse_radius;
+  double after[kMostHistory];
+  std::copy_n(history, law.history.length, after);
+  (void)law.respond(laws.level(), row, apart, 0.0, after);
+  return std::any_of(after, after + law.history.length, [](double c) { return c != 0.0; });
+}
+
 template <int Dim>
 void measure_pairs(const Brick<Dim>& brick, const PairList& list, const PairBlock& block,
                    Measures& m) {
@@ -64,14 +80,15 @@ void measure_pairs(const Brick<Dim>& brick, const PairList& list, const PairBloc
     }
     const bool touches = d2 < reach * reach;
     if (!touches && !(is_held && brick.world->range > 0.0)) return;
-    const double overlap = reach - std::sqrt(d2);
-    m.elastic.add(law.energy(laws.row(list.code[k]),
-                             {overlap, store.inverse_radius(i) + store.inverse_radius(j), reach},
-                             history));
+    const double depth = reach - std::sqrt(d2);
+    const Overlap overlap{depth, store.inverse_radius(i) + store.inverse_radius(j), reach};
+    const double* row = laws.row(list.code[k]);
+    if (!touches && !holds_from_afar<Dim>(laws, row, overlap, history)) return;
+    m.elastic.add(law.energy(row, overlap, history));
     if (!touches) return;
-    m.max_overlap = std::max(m.max_overlap, overlap);
+    m.max_overlap = std::max(m.max_overlap, depth);
     m.max_overlap_share =
-        std::max(m.max_overlap_share, overlap / std::min(store.radius(i), store.radius(j)));
+        std::max(m.max_overlap_share, depth / std::min(store.radius(i), store.radius(j)));
     ++m.contacts;
   });
 }
@@ -91,8 +108,9 @@ void measure_wall_contacts(const Brick<Dim>& brick, Measures& m) {
     if (!holds || !brick.walls.is_felt(store, world.wall_view(), k)) continue;
     const double* row = world.laws.row(
         world.laws.code(world.wall_specs[w].material, store.type[static_cast<std::size_t>(c.row)]));
-    m.elastic.add(world.laws.law().template in<Dim>().energy(
-        row, {overlap, store.inverse_radius(c.row), store.radius(c.row)}, c.history));
+    const Overlap at{overlap, store.inverse_radius(c.row), store.radius(c.row)};
+    if (overlap <= 0.0 && !holds_from_afar<Dim>(world.laws, row, at, c.history)) continue;
+    m.elastic.add(world.laws.law().template in<Dim>().energy(row, at, c.history));
     if (overlap <= 0.0) continue;
     m.max_overlap = std::max(m.max_overlap, overlap);
     m.max_overlap_share = std::max(m.max_overlap_share, overlap / store.radius(c.row));

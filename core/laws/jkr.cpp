@@ -76,7 +76,7 @@ Jkr::Circle Jkr::circle(const double* row, const Overlap& overlap) {
   const double r = cube_root<simd::Scalar>(1.0 / overlap.inverse_radius),
                a0 = row[Adhesion] * r * r;
   const double load = overlap.depth / (overlap.inverse_radius * a0 * a0);
-  return {a0, root<simd::Scalar>(std::max(load, kLeast))};
+  return {a0, root<simd::Scalar>(std::max(load, kLeast + 1e-12))};
 }
 
 double Jkr::area(const double* row, const Overlap& overlap) {

@@ -10,7 +10,7 @@ namespace barchan {
 /// The columns of a checkpoint's rank files; the numbers are part of the format.
 enum class CheckpointColumn : std::uint32_t {
   State = 1,    ///< what all ranks share, encoded; in the file of rank 0 (state.hpp)
-  Totals = 2,   ///< broken bonds, then the digits of every wall's work; a sum over all lanes
+  Totals = 2,   ///< broken bonds, digits of works of walls and of energies; a sum over all lanes
   Outruns = 3,  ///< what the next check may still have to tell
 
   // from 16 on: fields of particles (fields.hpp)

@@ -60,7 +60,7 @@ CheckpointShare some_share(int num_particles, std::int64_t first_id) {
   s.bond_laws = {0};
   s.bond_lengths = {0.1};
   s.bond_states = {1.0, 2.0};
-  s.totals.assign(1 + 2 * ExactSum::kDigits, 3);
+  s.totals.assign(num_totals(2), 3);
   return s;
 }
 
