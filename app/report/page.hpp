@@ -4,6 +4,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <barchan/core/io/base64.hpp>
+
 namespace barchan::app {
 
 /// What a page shows; app/report/page reads it by these names:
@@ -25,14 +27,7 @@ void write_page(const std::string& path, const PageData& data);
 
 /// Bytes as text for the page.
 template <class Values>
-[[nodiscard]] std::string encoded(const Values& values);
-
-}  // namespace barchan::app
-
-#include <barchan/core/io/base64.hpp>
-
-template <class Values>
-std::string barchan::app::encoded(const Values& values) {
+[[nodiscard]] std::string encoded(const Values& values) {
   std::string text;
   Base64Encoder encoder;
   encoder.add({reinterpret_cast<const char*>(values.data()),
@@ -41,3 +36,5 @@ std::string barchan::app::encoded(const Values& values) {
   encoder.finish(text);
   return text;
 }
+
+}  // namespace barchan::app
