@@ -175,7 +175,29 @@ void Simulation::EngineOf<Dim>::set_wall_load(std::size_t wall, double load) {
   plates_.set_load(wall, load);
 }
 
-template class Simulation::EngineOf<2>;
-template class Simulation::EngineOf<3>;
+template ParticleView Simulation::EngineOf<2>::view_of(Lane<2>&);
+template std::vector<ParticleView> Simulation::EngineOf<2>::owned();
+template std::vector<LoadView> Simulation::EngineOf<2>::loads();
+template std::shared_ptr<const void> Simulation::EngineOf<2>::release_arrays();
+template std::int64_t Simulation::EngineOf<2>::highest_id();
+template void Simulation::EngineOf<2>::for_each_view(
+    const std::function<void(const ParticleView&)>&);
+template const ParticleIndex& Simulation::EngineOf<2>::index();
+template void Simulation::EngineOf<2>::set_loads(const Loads&);
+template void Simulation::EngineOf<2>::set_gravity(const Vec3&);
+template void Simulation::EngineOf<2>::set_wall_velocity(std::size_t, const Vec3&);
+template void Simulation::EngineOf<2>::set_wall_load(std::size_t, double);
+template ParticleView Simulation::EngineOf<3>::view_of(Lane<3>&);
+template std::vector<ParticleView> Simulation::EngineOf<3>::owned();
+template std::vector<LoadView> Simulation::EngineOf<3>::loads();
+template std::shared_ptr<const void> Simulation::EngineOf<3>::release_arrays();
+template std::int64_t Simulation::EngineOf<3>::highest_id();
+template void Simulation::EngineOf<3>::for_each_view(
+    const std::function<void(const ParticleView&)>&);
+template const ParticleIndex& Simulation::EngineOf<3>::index();
+template void Simulation::EngineOf<3>::set_loads(const Loads&);
+template void Simulation::EngineOf<3>::set_gravity(const Vec3&);
+template void Simulation::EngineOf<3>::set_wall_velocity(std::size_t, const Vec3&);
+template void Simulation::EngineOf<3>::set_wall_load(std::size_t, double);
 
 }  // namespace barchan
