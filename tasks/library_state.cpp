@@ -41,6 +41,7 @@ void Simulation::EngineOf<Dim>::save(std::unique_ptr<State::Data>& state) {
     Brick<Dim>& copy = s.bricks[static_cast<std::size_t>(l)];
     copy = strip.lane(l).brick;
     for (WallSums& sums : copy.wall_sums) sums.work.carry();  // as after carries of the step
+    for (ExactSum& sum : copy.works.sums) sum.carry();
   });
   s.step = step_;
   s.cuts = parts_.rebuild.cuts();
@@ -57,6 +58,7 @@ void Simulation::EngineOf<Dim>::save(std::unique_ptr<State::Data>& state) {
   s.skin = parts_.world.skin;
   s.quick_travel = parts_.world.quick_travel;
   s.is_over = is_over_;
+  s.has_account = has_account_;
 }
 
 template <int Dim>
@@ -80,6 +82,7 @@ void Simulation::EngineOf<Dim>::load(const State::Data& state) {
   parts_.world.skin = s.skin;
   parts_.world.quick_travel = s.quick_travel;
   is_over_ = s.is_over;
+  has_account_ = s.has_account;
   stopped_ = false;
   failure_ = nullptr;
   if (keeper_) keeper_->forget_course();

@@ -43,7 +43,7 @@ struct StateOf final : State::Data {
   LeftDomain left;
   typename Watch<Dim>::Memory watch;
   double skin = 0.0, quick_travel = 0.0;
-  bool is_over = false;
+  bool is_over = false, has_account = false;
 };
 
 }  // namespace barchan
