@@ -48,10 +48,8 @@ void put(ByteWriter& out, const Vec3& v) {
 void put_contacts(ByteWriter& out, const ContactTable& table) {
   out.put(table.no_tension);
   with_law(table.law, [&]<class Law>(Law /*law*/) {
-    // The first law goes without its name: checkpoints are older than the list.
-    if (table.law != 0)
-      out.put(table.law), out.put(table.tangential), out.put(table.twisting),
-          out.put(table.adhesion), out.put(table.pull_off);
+    out.put(table.law), out.put(table.tangential), out.put(table.twisting), out.put(table.adhesion),
+        out.put(table.pull_off);
     for (const typename Law::Pair& pair : table.constants)
       Law::for_each_number(pair, [&](const char* /*key*/, double value) { out.put(value); });
   });

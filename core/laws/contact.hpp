@@ -90,6 +90,23 @@ inline constexpr bool kHasTwoTorques = requires(Force f) {
   f.second;
 };
 
+/// `respond` of a law that tells of its contacts by `touch`, so that others can be built on it.
+template <class Law>
+struct RespondsByTouch {
+  /// @param s  history, replaced by its value after the step; zero where the pair does not touch
+  /// @param out  of lanes that touch; of others any number
+  /// @return which lanes touch, or are held from afar
+  template <class S, int Level, class Constants, int Dim, int Length>
+  [[gnu::always_inline]] static inline typename S::Mask respond(const Constants& c,
+                                                                const PairState<S, Dim>& p,
+                                                                typename S::Real dt,
+                                                                typename S::Real (&s)[Length],
+                                                                PairForce<S, Dim>& out) {
+    Touch<S, Dim> t;
+    return Law::template touch<S, Level>(c, p, dt, s, out, t);
+  }
+};
+
 /// What acts on each end of a pair, but for the sign of the second one's force.
 template <class Force>
 [[gnu::always_inline]] inline auto& first_of(Force& f) {

@@ -18,7 +18,7 @@ namespace barchan {
 /// F acts from touch to touch: it vanishes at once where the two part. The clamp holds spring and
 /// dashpot, not F. Sources: Derjaguin, Muller & Toporov 1975, doi:10.1016/0021-9797(75)90018-1,
 /// friction as by Marshall 2009, doi:10.1016/j.jcp.2008.10.020; sjkr and sjkr2: LIGGGHTS.
-struct HertzAdhesive : HertzMindlin {
+struct HertzAdhesive : HertzMindlin, RespondsByTouch<HertzAdhesive> {
   static constexpr bool sticks_by(Adhesion adhesion) {
     return adhesion == Adhesion::Dmt || adhesion == Adhesion::Sjkr || adhesion == Adhesion::Sjkr2;
   }
@@ -59,18 +59,10 @@ struct HertzAdhesive : HertzMindlin {
 
   // ---- the law
 
+  using RespondsByTouch<HertzAdhesive>::respond;
+
   static double energy(const double* row, const History& history, const Overlap& overlap,
                        const double* numbers);
-
-  template <class S, int Level>
-  [[gnu::always_inline]] static inline typename S::Mask respond(const Constants<S>& c,
-                                                                const PairState<S, 3>& p,
-                                                                typename S::Real dt,
-                                                                typename S::Real (&s)[4],
-                                                                PairForce<S, 3>& out) {
-    Touch<S, 3> t;
-    return touch<S, Level>(c, p, dt, s, out, t);
-  }
 
   template <class S, int Level>
   [[gnu::always_inline]] static inline typename S::Mask touch(

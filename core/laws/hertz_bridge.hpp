@@ -20,7 +20,7 @@ namespace barchan {
 /// The clamp holds spring and dashpot, not F, and friction goes by them alone.
 /// Sources: Willett, Adams, Johnson & Seville 2000, doi:10.1021/la000657y (force); Lian, Thornton &
 /// Adams 1993, doi:10.1006/jcis.1993.1452 (rupture).
-struct HertzBridge : HertzMindlin {
+struct HertzBridge : HertzMindlin, RespondsByTouch<HertzBridge> {
   static constexpr bool sticks_by(Adhesion adhesion) { return adhesion == Adhesion::Bridge; }
 
   // ---- what a deck says of a pair of materials (hertz_bridge.cpp), in its [[bridge]]
@@ -66,19 +66,11 @@ struct HertzBridge : HertzMindlin {
 
   // ---- the law
 
+  using RespondsByTouch<HertzBridge>::respond;
+
   /// The history of HertzMindlin; the radius of a contact whose bridge alone holds is −1.
   static double energy(const double* row, const History& history, const Overlap& overlap,
                        const double* numbers);
-
-  template <class S, int Level>
-  [[gnu::always_inline]] static inline typename S::Mask respond(const Constants<S>& c,
-                                                                const PairState<S, 3>& p,
-                                                                typename S::Real dt,
-                                                                typename S::Real (&s)[4],
-                                                                PairForce<S, 3>& out) {
-    Touch<S, 3> t;
-    return touch<S, Level>(c, p, dt, s, out, t);
-  }
 
   template <class S, int Level>
   [[gnu::always_inline]] static inline typename S::Mask touch(

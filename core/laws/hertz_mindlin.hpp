@@ -27,7 +27,7 @@ namespace barchan {
 /// Sources: Hertz 1882, doi:10.1515/crll.1882.92.156; Mindlin 1949, doi:10.1115/1.4009973;
 /// Thornton, Cummins & Cleary 2013, doi:10.1016/j.powtec.2012.08.012 (growth); Tsuji, Tanaka &
 /// Ishida 1992, doi:10.1016/0032-5910(92)88030-L (c).
-struct HertzMindlin {
+struct HertzMindlin : RespondsByTouch<HertzMindlin> {
   static constexpr const char* kName = "hertz";
   /// Disks of unit thickness have no Hertz law.
   static constexpr bool kIsForDisks = false, kRolls = false;
@@ -137,16 +137,6 @@ struct HertzMindlin {
   /// back.
   static double energy(const double* row, const History& history, const Overlap& overlap,
                        const double* numbers);
-
-  template <class S, int Level>
-  [[gnu::always_inline]] static inline typename S::Mask respond(const Constants<S>& c,
-                                                                const PairState<S, 3>& p,
-                                                                typename S::Real dt,
-                                                                typename S::Real (&s)[4],
-                                                                PairForce<S, 3>& out) {
-    Touch<S, 3> t;
-    return touch<S, Level>(c, p, dt, s, out, t);
-  }
 
   template <class S, int Level>
   [[gnu::always_inline]] static inline typename S::Mask touch(

@@ -24,7 +24,7 @@ namespace barchan {
 /// the pull, 3·pi·g·R (s³ = 1/2). Contacts begin where spheres touch.
 /// Sources: Johnson, Kendall & Roberts 1971, doi:10.1098/rspa.1971.0141; Thornton & Yin 1991,
 /// doi:10.1016/0032-5910(91)80178-L (friction); Marshall 2009, doi:10.1016/j.jcp.2008.10.020.
-struct Jkr : HertzMindlin {
+struct Jkr : HertzMindlin, RespondsByTouch<Jkr> {
   static constexpr const char* kName = "jkr";
 
   // ---- what a deck says of a pair of materials (jkr.cpp)
@@ -73,6 +73,8 @@ struct Jkr : HertzMindlin {
 
   // ---- the law
 
+  using RespondsByTouch<Jkr>::respond;
+
   static double tangential_stiffness(const double* row, const Overlap& overlap);
   using HertzMindlin::tangential_stiffness;
   static double area(const double* row, const Overlap& overlap);
@@ -107,16 +109,6 @@ struct Jkr : HertzMindlin {
       x = x * ((x3 + (a + a)) / ((x3 + x3) + a));
     }
     return x;
-  }
-
-  template <class S, int Level>
-  [[gnu::always_inline]] static inline typename S::Mask respond(const Constants<S>& c,
-                                                                const PairState<S, 3>& p,
-                                                                typename S::Real dt,
-                                                                typename S::Real (&s)[4],
-                                                                PairForce<S, 3>& out) {
-    Touch<S, 3> t;
-    return touch<S, Level>(c, p, dt, s, out, t);
   }
 
   template <class S, int Level>

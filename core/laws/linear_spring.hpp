@@ -21,7 +21,7 @@ namespace barchan {
 /// The response is the force on the first particle of the pair; the second one gets its negative,
 /// and both get the same torque / radius. Sources: Cundall & Strack 1979,
 /// doi:10.1680/geot.1979.29.1.47; the clamp is ours.
-struct LinearSpring {
+struct LinearSpring : RespondsByTouch<LinearSpring> {
   static constexpr const char* kName = "linear";
   static constexpr bool kIsForDisks = true, kRolls = false;
   static constexpr bool sticks_by(Adhesion adhesion) { return adhesion == Adhesion::None; }
@@ -150,20 +150,7 @@ struct LinearSpring {
     return 0.5 * (row[Kn] * overlap.depth * overlap.depth + row[Kt] * s2);
   }
 
-  /// @param s  history: the tangential spring [m], replaced by its value after the step; zero where
-  /// the pair does not touch
-  /// @param out  of lanes that touch; of others any number
-  /// @return which lanes touch
-  template <class S, int Level, int Dim, int Length>
-  [[gnu::always_inline]] static inline typename S::Mask respond(const Constants<S>& c,
-                                                                const PairState<S, Dim>& p,
-                                                                typename S::Real dt,
-                                                                typename S::Real (&s)[Length],
-                                                                PairForce<S, Dim>& out) {
-    Touch<S, Dim> t;
-    return touch<S, Level>(c, p, dt, s, out, t);
-  }
-
+  /// @param s  the tangential spring [m]
   template <class S, int Level>
   [[gnu::always_inline]] static inline typename S::Mask touch(
       const Constants<S>& c, const PairState<S, 2>& p, typename S::Real dt,

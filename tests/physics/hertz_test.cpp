@@ -217,5 +217,29 @@ TEST(ChungOoi, Test6ASphereThatSpinsMeetsAWall) {
   }
 }
 
+// One particle is held between two fixed ones, as stiff as no impact at the reference speed makes
+// contacts: nothing moves, but the step is unstable.
+TEST(Hertz, ARunEndsWhereContactsAreTooStiffForItsStep) {
+  const std::string deck =
+      head(0.015, "reference_speed = 1e-3") +
+      material("m", {1000.0, 1e7, 0.25}, "restitution = 0.8\nfriction = 0.3") +
+      source(grain(0.1, 0.0, Vec3::Zero())) +
+      "[[particles]]\nkind = \"list\"\nmaterial = \"m\"\nfixed = true\nparticle = [\n" +
+      grain(0.1, 0.195, Vec3::Zero()) + grain(0.1, -0.195, Vec3::Zero()) + "]\n";
+  std::string message;
+  try {
+    Simulation run = test::simulate(deck);
+    run.run(1100);
+  } catch (const AgreedError& e) {
+    message = e.what();
+  }
+  for (const char* part : {"at step 100", "time.step = 0.015 s has become unstable: particle 1 at",
+                           "overlap by 0.05 of the smaller radius", "reference_speed"})
+    EXPECT_NE(message.find(part), std::string::npos) << part << " in " << message;
+
+  Simulation allowed = test::simulate(deck, {"time.allow_unstable=true"});
+  EXPECT_EQ(allowed.run(1100), 1100);
+}
+
 }  // namespace
 }  // namespace barchan
