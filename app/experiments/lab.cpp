@@ -19,10 +19,10 @@ namespace fs = std::filesystem;
 namespace barchan::app {
 namespace {
 
-constexpr std::array<std::string_view, 12> kWords{"hosts", "delay", "rate",  "jitter",
-                                                  "spike", "mtu",   "queue", "seed",
-                                                  "osc",   "mpi",   "env",   "even-price"};
-constexpr std::array<std::string_view, 4> kFlags{"realtime", "reorder", "no-offload", "no-pin"};
+constexpr std::array<std::string_view, 11> kWords{
+    "hosts", "delay", "rate", "jitter", "spike", "mtu", "queue", "seed", "osc", "mpi", "env"};
+constexpr std::array<std::string_view, 5> kFlags{"even-price", "realtime", "reorder", "no-offload",
+                                                 "no-pin"};
 constexpr const char* kRemedy = "give words such as hosts=2,delay=0:200us,rate=1gbit";
 
 template <std::size_t N>
@@ -39,16 +39,18 @@ bool is_in(const std::array<std::string_view, N>& words, std::string_view word) 
 Axis axis_of(const std::string& text) {
   const auto equals = text.find('=');
   const std::string word = text.substr(0, equals);
+  const bool is_flag = is_in(kFlags, word);
+  if (!is_flag && !is_in(kWords, word)) refuse(word);
   if (equals == std::string::npos) {
-    if (is_in(kFlags, word) || word == "even-price") return {word, {"yes"}};
-    if (is_in(kWords, word))
-      throw InputError(fmt::format("--lab: '{}' has no value", word), kRemedy);
-    refuse(word);
+    if (is_flag) return {word, {"yes"}};
+    throw InputError(fmt::format("--lab: '{}' has no value", word), kRemedy);
   }
-  if (!is_in(kWords, word)) refuse(word);
   Axis axis{word, split(text.substr(equals + 1), ':')};
   for (const std::string& value : axis.values) {
     if (value.empty()) throw InputError(fmt::format("--lab: '{}' has no value", text), kRemedy);
+    if (is_flag && value != "yes" && value != "no")
+      throw InputError(fmt::format("--lab: '{}' is neither yes nor no", text),
+                       fmt::format("give {0}, or {0}=yes:no for both", word));
   }
   return axis;
 }
@@ -68,7 +70,7 @@ std::string usual_osc(int ranks_per_host) {
 void add_flags(const Point& point, std::vector<std::string>& words) {
   for (const auto& [axis, value] : point) {
     if (axis == "hosts" || axis == "osc" || axis == "mpi" || !is_of_lab(axis)) continue;
-    if (is_in(kFlags, axis) || axis == "even-price") {
+    if (is_in(kFlags, axis)) {
       if (value == "yes") words.push_back("--" + axis);
     } else {
       words.insert(words.end(), {"--" + axis, value});
@@ -123,7 +125,7 @@ void check_lab(const std::string& netlab, const std::vector<Point>& points) {
     words.insert(words.end() - 1, "--check");
     words.emplace_back("true");
     std::string said;
-    if (!asked.insert(words).second || run_for_output(words, said).status == 0) continue;
+    if (!asked.insert(words).second || run_for_output(words, said) == 0) continue;
     const auto from = said.rfind("netlab: ");
     said.erase(0, from == std::string::npos ? 0 : from + std::string("netlab: ").size());
     if (said.starts_with("error: ")) said.erase(0, std::string("error: ").size());

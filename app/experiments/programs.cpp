@@ -33,6 +33,10 @@ extern "C" void on_interrupt(int /*signal*/) {
   interrupted = 1;
 }
 
+[[noreturn]] void refuse_to_start() {
+  throw RunError(std::string("no process can be started: ") + std::strerror(errno));
+}
+
 [[noreturn]] void become(const std::vector<std::string>& words, const std::string& log) {
   ::prctl(PR_SET_PDEATHSIG, SIGTERM);
   const int file = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
@@ -48,13 +52,19 @@ extern "C" void on_interrupt(int /*signal*/) {
   ::_exit(kNoSuchProgram);
 }
 
+/// Of a child that has ended: its exit status, or 128 and its signal, as a shell says it.
+int exit_status(int status) {
+  return WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
+}
+
 /// Waits; once interrupted, asks the program to end, and kills it when it does not.
+/// @return  as exit_status
 int await(pid_t child) {
   int status = 0, tenths = 0;
   while (true) {
     const pid_t done = ::waitpid(child, &status, interrupted != 0 ? WNOHANG : 0);
-    if (done == child) return status;
-    if (done < 0 && errno != EINTR) return 1 << 8;
+    if (done == child) return exit_status(status);
+    if (done < 0 && errno != EINTR) return 1;
     if (interrupted == 0) continue;
     if (tenths == 0) ::kill(child, SIGTERM);
     if (++tenths == 10 * kGraceSeconds) ::kill(child, SIGKILL);
@@ -93,10 +103,11 @@ std::string find_program(const std::string& name) {
   return {};
 }
 
-Ended run_for_output(const std::vector<std::string>& words, std::string& output) {
+int run_for_output(const std::vector<std::string>& words, std::string& output) {
   int ends[2];
-  if (::pipe(ends) != 0) throw RunError("no process can be started");
+  if (::pipe(ends) != 0) refuse_to_start();
   const pid_t child = ::fork();
+  if (child < 0) refuse_to_start();
   if (child == 0) {
     ::close(ends[0]);
     become(words, "/dev/fd/" + std::to_string(ends[1]));
@@ -106,9 +117,7 @@ Ended run_for_output(const std::vector<std::string>& words, std::string& output)
   for (ssize_t got = 0; (got = ::read(ends[0], buffer, sizeof buffer)) > 0;)
     output.append(buffer, static_cast<std::size_t>(got));
   ::close(ends[0]);
-  if (child < 0) throw RunError("no process can be started");
-  const int status = await(child);
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : 128, false};
+  return await(child);
 }
 
 Programs::Programs() {
@@ -121,13 +130,11 @@ bool Programs::is_interrupted() {
   return interrupted != 0;
 }
 
-Ended Programs::run(const std::vector<std::string>& words, const std::string& log) {
+int Programs::run(const std::vector<std::string>& words, const std::string& log) {
   const pid_t child = ::fork();
-  if (child < 0) throw RunError(std::string("no process can be started: ") + std::strerror(errno));
+  if (child < 0) refuse_to_start();
   if (child == 0) become(words, log);
-  const int status = await(child);
-  if (WIFSIGNALED(status)) return {128 + WTERMSIG(status), is_interrupted()};
-  return {WEXITSTATUS(status), is_interrupted()};
+  return await(child);
 }
 
 OtherWork::OtherWork() : begin_(now()) {}

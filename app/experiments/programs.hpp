@@ -13,14 +13,9 @@ namespace barchan::app {
 /// A program in PATH, or as its path says; empty where there is none.
 [[nodiscard]] std::string find_program(const std::string& name);
 
-/// How a program ended.
-struct Ended {
-  int status = 0;  ///< exit status; 128 and more: by a signal
-  bool was_interrupted = false;
-};
-
-/// Runs a program and returns all that it printed. Errors: RunError where it cannot be started.
-[[nodiscard]] Ended run_for_output(const std::vector<std::string>& words, std::string& output);
+/// Runs a program and appends all that it prints. @return  exit status, or 128 and the signal that
+/// ended it. Errors: RunError where no process can be started.
+[[nodiscard]] int run_for_output(const std::vector<std::string>& words, std::string& output);
 
 /// Starts programs one after the other. SIGINT, SIGTERM and SIGHUP then end the program that runs,
 /// and no further one starts.
@@ -28,9 +23,8 @@ class Programs {
  public:
   Programs();
 
-  /// Runs a program to its end; what it prints goes into a file. Errors: RunError where it cannot
-  /// be started.
-  [[nodiscard]] Ended run(const std::vector<std::string>& words, const std::string& log);
+  /// Runs a program to its end; what it prints goes into a file. @return and errors as above
+  [[nodiscard]] int run(const std::vector<std::string>& words, const std::string& log);
   [[nodiscard]] static bool is_interrupted();
 };
 

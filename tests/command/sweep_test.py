@@ -54,7 +54,7 @@ def check_sweep():
 
 
 def check_launcher_and_failure():
-    fresh("l", "wrap.sh")
+    fresh("l", "f", "wrap.sh")
     write("wrap.sh", '#!/bin/sh\ntest "$2" = 1 || { echo "barchan: no second rank here" >&2; exit 3; }\nshift 2\nexec "$@"\n')
     os.chmod("wrap.sh", 0o755)
     done = run("sweep", "case.toml", "--out", "l", "--ranks", "1,2", "--exchange", "isend", "--repeat", "1", "--launcher",
@@ -62,6 +62,10 @@ def check_launcher_and_failure():
     expect(done.returncode == 1 and "status 3: no second rank here" in done.stderr, f"a run that fails: {done}")
     expect("failed at 1 of 2 points" in done.stderr and len(json.loads(run("table", "l", "--json").stdout)["points"]) == 1,
            f"a sweep with a failed run: {done.stderr}")
+    done = run("sweep", "case.toml", "--out", "f", "--ranks", "2", "--exchange", "isend", "--repeat", "2", "--launcher",
+               "./wrap.sh -n {ranks}", *QUICK)
+    expect(done.returncode == 1 and "failed at 1 of 1 points" in done.stderr and "has no run" not in done.stderr,
+           f"a sweep of which every run failed: {done.stderr}")
 
 
 def check_interrupt():
@@ -85,7 +89,7 @@ def check_wrong_input():
                           (("case.toml", "--vary", "time.step"), "--vary"), (("case.toml", "--ranks", "5000"), "ranks"),
                           (("case.toml", "--launcher", "no-such-launcher"), "--launcher"),
                           (("case.toml", "--vary", "time.step=1e-4,1"), "step"),
-                          (("case.toml", "--barchan", "./nothing"), "no program")]:
+                          (("case.toml", "--barchan", "./nothing"), "no program"), (("case.toml", "--lab", "realtime=5"), "yes:no")]:
         fresh("w")
         done = run("sweep", *words, "--out", "w")
         expect(done.returncode == 2 and len(messages(done)) == 1 and remedy in done.stderr, f"sweep {words}: {done}")
