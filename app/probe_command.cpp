@@ -2,15 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include <barchan/app/commands.hpp>
+#include <barchan/app/json_text.hpp>
 #include <barchan/app/readable.hpp>
 
 namespace barchan::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Rows = std::vector<std::vector<std::string>>;
 
 std::string microseconds(double seconds) {
@@ -96,7 +94,7 @@ void print_json(const ProbeReport& r, int ranks) {
   for (const ExchangeObstacle& o : r.obstacles) {
     json["obstacles"].push_back({{"exchange", o.exchange}, {"reason", o.reason}});
   }
-  std::puts(json.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+  std::puts(indented_text(json).c_str());
   std::fflush(stdout);
 }
 

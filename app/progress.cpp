@@ -12,8 +12,7 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
+#include <barchan/app/json_text.hpp>
 #include <barchan/app/readable.hpp>
 #include <barchan/app/terminal.hpp>
 
@@ -21,8 +20,8 @@ namespace barchan::app {
 namespace {
 
 constexpr double kTerminalInterval = 0.25;  // [s]
-constexpr double kPipeInterval = 10.0;
-constexpr double kFileInterval = 2.0;
+constexpr double kPipeInterval = 10.0;      // [s]
+constexpr double kFileInterval = 2.0;       // [s]
 
 }  // namespace
 
@@ -45,8 +44,8 @@ std::int64_t Progress::most_steps() {
   if (simulation_.communicator().is_root()) {
     const Timings t = simulation_.timings();
     if (t.loop_seconds > 0.0)
-      steps[0] =
-          static_cast<std::int64_t>(static_cast<double>(t.steps) / t.loop_seconds * interval_);
+      steps[0] = static_cast<std::int64_t>(static_cast<double>(t.steps) / t.loop_seconds *
+                                           std::min(interval_, kFileInterval));
     // Grows gently, since the first steps tell little.
     steps[0] = std::clamp<std::int64_t>(steps[0], 1, std::max<std::int64_t>(16, 2 * t.steps));
   }
@@ -71,18 +70,18 @@ double Progress::seconds_left(double now) const {
 void Progress::write(double now) {
   last_write_ = now;
   const Timings t = simulation_.timings();
-  const nlohmann::ordered_json json{{"step", simulation_.step()},
-                                    {"steps", simulation_.model().time.num_steps},
-                                    {"time", simulation_.time()},
-                                    {"particles", simulation_.num_particles()},
-                                    {"ranks", simulation_.communicator().size()},
-                                    {"seconds", now},
-                                    {"seconds_left", seconds_left(now)},
-                                    {"loop_steps", t.steps},
-                                    {"loop_seconds", t.loop_seconds},
-                                    {"in_flight_seconds", t.in_flight_seconds},
-                                    {"exposed_seconds", t.exposed_seconds}};
-  const std::string temporary = file_ + ".tmp", text = json.dump() + "\n";
+  const Json json{{"step", simulation_.step()},
+                  {"steps", simulation_.model().time.num_steps},
+                  {"time", simulation_.time()},
+                  {"particles", simulation_.num_particles()},
+                  {"ranks", simulation_.communicator().size()},
+                  {"seconds", now},
+                  {"seconds_left", seconds_left(now)},
+                  {"loop_steps", t.steps},
+                  {"loop_seconds", t.loop_seconds},
+                  {"in_flight_seconds", t.in_flight_seconds},
+                  {"exposed_seconds", t.exposed_seconds}};
+  const std::string temporary = file_ + ".tmp", text = compact_text(json) + "\n";
   std::FILE* file = std::fopen(temporary.c_str(), "w");
   if (file == nullptr) return;
   const bool is_whole = std::fwrite(text.data(), 1, text.size(), file) == text.size();

@@ -12,7 +12,8 @@ namespace barchan::app {
 /// second, else a line every ten seconds. Rank 0 prints; times and hidden share are its own.
 class Progress {
  public:
-  /// @param file  kept up to date for `barchan watch`, also by a quiet run, and removed at the end
+  /// @param file  kept up to date for `barchan watch`, and removed at the end; a quiet run, whose
+  /// ranks must not meet for it, writes it when a result is due
   Progress(const Simulation& simulation, bool is_quiet, std::string file);
   ~Progress();
   Progress(const Progress&) = delete;
@@ -33,7 +34,7 @@ class Progress {
   double last_write_ = 0.0;
   bool is_silent_;    ///< all ranks alike
   bool is_terminal_;  ///< rank 0 knows
-  double interval_;   ///< [s]
+  double interval_;   ///< [s] between lines
   std::int64_t begin_ = now_ns();
   double last_seconds_ = 0.0, last_loop_ = 0.0;  ///< at the last line
   std::int64_t last_step_;

@@ -11,9 +11,8 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include <barchan/app/commands.hpp>
+#include <barchan/app/json_text.hpp>
 #include <barchan/app/readable.hpp>
 #include <barchan/app/run_view.hpp>
 #include <barchan/app/terminal.hpp>
@@ -27,8 +26,6 @@ namespace fs = std::filesystem;
 namespace barchan::app {
 namespace {
 
-using Json = nlohmann::json;
-
 /// What a file says now; nothing where it is gone, as it may be at any time.
 std::string text_now(const std::string& path) {
   try {
@@ -36,11 +33,6 @@ std::string text_now(const std::string& path) {
   } catch (const std::exception&) {
     return {};
   }
-}
-
-double number(const Json& json, const char* key) {
-  const auto it = json.find(key);
-  return it != json.end() && it->is_number() ? it->get<double>() : 0.0;
 }
 
 /// Whether a run holds a folder, as far as anybody can tell from this host.
@@ -88,35 +80,39 @@ std::string bar(double share) {
 }
 
 void add_progress(const Json& p, Rows& rows) {
-  const double steps = std::max(1.0, number(p, "steps")), share = number(p, "step") / steps;
+  const double steps = std::max(1.0, number_in(p, "steps")), share = number_in(p, "step") / steps;
   rows.push_back(
-      {"step", fmt::format("{} of {}  {} {}", grouped(static_cast<std::int64_t>(number(p, "step"))),
-                           grouped(static_cast<std::int64_t>(steps)), bar(share), percent(share))});
-  rows.push_back({"left", fmt::format("{} after {}", readable_time(number(p, "seconds_left")),
-                                      readable_time(number(p, "seconds")))});
-  const double per_step = number(p, "loop_seconds") / std::max(1.0, number(p, "loop_steps"));
+      {"step",
+       fmt::format("{} of {}  {} {}", grouped(static_cast<std::int64_t>(number_in(p, "step"))),
+                   grouped(static_cast<std::int64_t>(steps)), bar(share), percent(share))});
+  rows.push_back({"left", fmt::format("{} after {}", readable_time(number_in(p, "seconds_left")),
+                                      readable_time(number_in(p, "seconds")))});
+  const double per_step = number_in(p, "loop_seconds") / std::max(1.0, number_in(p, "loop_steps"));
   if (per_step > 0.0)
     rows.push_back(
         {"rate", fmt::format("{} a step, {} particle-steps/s", readable_seconds(per_step),
-                             readable_rate(number(p, "particles") / per_step))});
-  const double flight = number(p, "in_flight_seconds"), exposed = number(p, "exposed_seconds");
+                             readable_rate(number_in(p, "particles") / per_step))});
+  const double flight = number_in(p, "in_flight_seconds"),
+               exposed = number_in(p, "exposed_seconds");
   if (flight > 0.0)
     rows.push_back(
-        {"hidden", fmt::format("{} of communication, {} a step exposed, on rank 0 of {}",
-                               percent(std::clamp(1.0 - exposed / flight, 0.0, 1.0)),
-                               readable_seconds(exposed / std::max(1.0, number(p, "loop_steps"))),
-                               grouped(static_cast<std::int64_t>(number(p, "ranks"))))});
+        {"hidden",
+         fmt::format("{} of communication, {} a step exposed, on rank 0 of {}",
+                     percent(std::clamp(1.0 - exposed / flight, 0.0, 1.0)),
+                     readable_seconds(exposed / std::max(1.0, number_in(p, "loop_steps"))),
+                     grouped(static_cast<std::int64_t>(number_in(p, "ranks"))))});
 }
 
 void add_state(const Json& row, Rows& rows) {
   if (!row.contains("step")) return;
   rows.push_back(
       {"energy", fmt::format("kinetic {:.4g} J, elastic {:.4g} J at step {}",
-                             number(row, "kinetic_energy"), number(row, "elastic_energy"),
-                             grouped(static_cast<std::int64_t>(number(row, "step"))))});
-  rows.push_back({"state", fmt::format("{} contacts, largest overlap {:.3g} m",
-                                       grouped(static_cast<std::int64_t>(number(row, "contacts"))),
-                                       number(row, "max_overlap"))});
+                             number_in(row, "kinetic_energy"), number_in(row, "elastic_energy"),
+                             grouped(static_cast<std::int64_t>(number_in(row, "step"))))});
+  rows.push_back(
+      {"state", fmt::format("{} contacts, largest overlap {:.3g} m",
+                            grouped(static_cast<std::int64_t>(number_in(row, "contacts"))),
+                            number_in(row, "max_overlap"))});
 }
 
 /// Looks at a run again and again, and draws over what it drew before on a terminal.
@@ -127,7 +123,7 @@ class Watcher {
 
   void look() {
     const std::string& folder = arguments_.path;
-    const Json progress = Json::parse(text_now(folder + "/progress.json"), nullptr, false);
+    const Json progress = parsed(text_now(folder + "/progress.json"));
     Rows rows;
     if (progress.is_object())
       add_progress(progress, rows);

@@ -1,11 +1,12 @@
 #include <barchan/app/experiments/axes.hpp>
 
 #include <algorithm>
-#include <cstdint>
+#include <span>
 
 #include <fmt/format.h>
 
 #include <barchan/core/base/error.hpp>
+#include <barchan/core/model/digest.hpp>
 
 namespace barchan::app {
 namespace {
@@ -15,13 +16,6 @@ constexpr std::size_t kLongestName = 200;  // that file systems take is 255 byte
 bool is_plain(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
          std::string_view("=,.+-_%").find(c) != std::string_view::npos;
-}
-
-/// FNV-1a, so that different points have different folders however their names are shortened.
-std::uint64_t hash_of(std::string_view text) {
-  std::uint64_t hash = 0xcbf29ce484222325U;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3U;
-  return hash;
 }
 
 }  // namespace
@@ -93,7 +87,9 @@ std::string folder_name(const Point& point) {
   std::replace_if(
       name.begin(), name.end(), [](char c) { return !is_plain(c); }, '_');
   if (name == text && name.size() <= kLongestName) return name;
-  return fmt::format("{}-{:08x}", name.substr(0, kLongestName), hash_of(text) & 0xffffffffU);
+  // Different points have different folders, however their names are shortened.
+  return fmt::format("{}-{:016x}", name.substr(0, kLongestName),
+                     hash_of_bytes(std::as_bytes(std::span(text))));
 }
 
 bool has(const Point& point, const Point& values) {

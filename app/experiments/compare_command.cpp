@@ -10,7 +10,6 @@
 namespace barchan::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Rows = std::vector<std::vector<std::string>>;
 
 std::string change(double a, double b) {
@@ -101,7 +100,7 @@ void compare(const CompareArguments& arguments) {
   if (arguments.json) {
     Json json = Json::array();
     for (const PointPair& pair : pairs) json.push_back(json_of(pair));
-    std::printf("%s\n", json.dump(2).c_str());
+    std::puts(indented_text(json).c_str());
   } else {
     std::printf("A: %s\nB: %s%s\n", arguments.a.c_str(), arguments.b.c_str(),
                 pairs.front().are_paired ? ", measured in turn" : "");

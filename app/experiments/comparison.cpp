@@ -1,6 +1,7 @@
 #include <barchan/app/experiments/comparison.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <set>
 
@@ -13,14 +14,12 @@ namespace fs = std::filesystem;
 namespace barchan::app {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr double kLeastConfidence = 0.85;  // below it, an interval says nothing
 constexpr double kLeastShare = 0.0005;     // of a step, for a part to be worth a line
 
 std::string word(const Json& json) {
   if (json.is_null()) return "–";
-  return json.is_string() ? json.get<std::string>() : json.dump();
+  return json.is_string() ? json.get<std::string>() : compact_text(json);
 }
 
 Json at(const Json& json, const std::string& pointer) {

@@ -5,6 +5,7 @@
 
 #include <barchan/app/experiments/measurements.hpp>
 #include <barchan/app/experiments/statistics.hpp>
+#include <barchan/app/json_text.hpp>
 
 namespace barchan::app {
 
@@ -29,7 +30,7 @@ struct Difference {
   std::string what, a, b;
 };
 /// What differs between two runs in deck, machine and library, and in how they were carried out.
-[[nodiscard]] std::vector<Difference> differences(const nlohmann::json& a, const nlohmann::json& b);
+[[nodiscard]] std::vector<Difference> differences(const Json& a, const Json& b);
 
 /// Parts of a step, [µs] in the median of each side.
 struct PartTimes {

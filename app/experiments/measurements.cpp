@@ -8,40 +8,16 @@
 #include <fmt/format.h>
 
 #include <barchan/core/base/error.hpp>
-#include <barchan/core/io/text_file.hpp>
 
 namespace fs = std::filesystem;
 
 namespace barchan::app {
 namespace {
 
-using Json = nlohmann::json;
-
-double number(const Json& json, const char* key) {
-  const auto it = json.find(key);
-  return it != json.end() && it->is_number() ? it->get<double>() : 0.0;
-}
-
-Json part(const Json& json, const char* key) {
-  const auto it = json.find(key);
-  return it != json.end() && it->is_object() ? *it : Json::object();
-}
-
 std::string word(const Json& json, const char* key) {
   const auto it = json.find(key);
   if (it == json.end() || it->is_null()) return {};
-  return it->is_string() ? it->get<std::string>() : it->dump();
-}
-
-/// The object in a file; null where there is no file.
-Json read_json(const std::string& path) {
-  if (!fs::is_regular_file(path)) return {};
-  try {
-    Json json = Json::parse(read_text_file(path));
-    if (json.is_object()) return json;
-  } catch (const Json::exception&) {  // falls through to the same message
-  }
-  throw InputError(SourcePlace{path, 0, 0}, "is no JSON of barchan", "remove it, or run again");
+  return it->is_string() ? it->get<std::string>() : compact_text(*it);
 }
 
 bool has_ended(const Json& run) {
@@ -79,8 +55,8 @@ void add_record(const std::string& path, Experiment& experiment) {
   if (run.is_null() || !has_ended(run) || !record.contains("point")) return;
   Measurement m;
   for (const Json& at : record["point"]) m.point.push_back({word(at, "axis"), word(at, "value")});
-  m.repetition = static_cast<int>(number(record, "repetition"));
-  m.others = number(record, "others");
+  m.repetition = static_cast<int>(number_in(record, "repetition"));
+  m.others = number_in(record, "others");
   m.folder = path.substr(0, path.size() - 5);
   m.run = run;
   experiment.runs.push_back(std::move(m));
@@ -115,25 +91,26 @@ void number_repetitions(Experiment& experiment) {
 }  // namespace
 
 double Measurement::per_step(double seconds) const {
-  const double steps = number(run, run.contains("loop_steps") ? "loop_steps" : "steps");
+  const double steps = number_in(run, run.contains("loop_steps") ? "loop_steps" : "steps");
   return 1e6 * seconds / std::max(1.0, steps);
 }
 
 double Measurement::step() const {
-  return per_step(number(run, "loop_seconds"));
+  return per_step(number_in(run, "loop_seconds"));
 }
 
 double Measurement::communication(const char* key) const {
-  return per_step(number(part(run, "communication"), key));
+  return per_step(number_in(object_in(run, "communication"), key));
 }
 
 double Measurement::work() const {
-  const Json phases = part(run, "phases");
-  return per_step(number(phases, "forces") + number(phases, "bands") + number(phases, "search"));
+  const Json phases = object_in(run, "phases");
+  return per_step(number_in(phases, "forces") + number_in(phases, "bands") +
+                  number_in(phases, "search"));
 }
 
 double Measurement::hidden() const {
-  return number(part(run, "communication"), "hidden_fraction");
+  return number_in(object_in(run, "communication"), "hidden_fraction");
 }
 
 std::string Measurement::digest() const {

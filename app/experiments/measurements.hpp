@@ -3,9 +3,8 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include <barchan/app/experiments/axes.hpp>
+#include <barchan/app/json_text.hpp>
 
 // What runs that have ended took, from their folders.
 
@@ -17,7 +16,7 @@ struct Measurement {
   int repetition = 1;
   double others = 0.0;  ///< cores that other processes used meanwhile; 0 where nobody looked
   std::string folder;   ///< of the run
-  nlohmann::json run;   ///< run.json
+  Json run;             ///< run.json
 
   [[nodiscard]] double per_step(double seconds) const;        ///< [µs]
   [[nodiscard]] double step() const;                          ///< [µs], of the slowest rank
@@ -29,7 +28,7 @@ struct Measurement {
 
 struct Experiment {
   std::string path;
-  nlohmann::json sweep;           ///< sweep.json; null for other folders
+  Json sweep;                     ///< sweep.json; null for other folders
   std::vector<Measurement> runs;  ///< point by point, in the order of the sweep
 
   [[nodiscard]] std::vector<Point> points() const;
@@ -49,7 +48,7 @@ struct Selection {
 
 /// The steps [µs] of some runs.
 [[nodiscard]] std::vector<double> steps_of(const std::vector<const Measurement*>& runs);
-/// The median of what a function says of them.
+/// What a function says of each of them.
 template <class Figure>
 [[nodiscard]] std::vector<double> figures_of(const std::vector<const Measurement*>& runs,
                                              Figure&& figure) {

@@ -13,8 +13,6 @@
 namespace barchan::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 PointRow row_of(const Experiment& experiment, const Point& point) {
   PointRow row;
   row.point = point;
@@ -96,6 +94,10 @@ RunTable tabulate(const Experiment& experiment, const std::string& against) {
   return table;
 }
 
+Point shown_base(const RunTable& table) {
+  return without(table.base, table.common);
+}
+
 std::string microseconds(double time) {
   return time < 1e4 ? fmt::format("{:#.4g}", time) : grouped(static_cast<std::int64_t>(time + 0.5));
 }
@@ -132,8 +134,8 @@ Json json_of(const Measurement& m) {
   json["hidden"] = m.hidden();
   json["others"] = m.others;
   for (const char* key : {"particles", "steps", "loop_seconds", "rebuilds", "transport"})
-    json[key] = m.run.value(key, nlohmann::json());
-  json["exchange_used"] = m.run.value("exchange", nlohmann::json());
+    json[key] = m.run.value(key, Json());
+  json["exchange_used"] = m.run.value("exchange", Json());
   json["digest"] = m.digest();
   json["folder"] = m.folder;
   return json;

@@ -3,9 +3,8 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include <barchan/app/experiments/measurements.hpp>
+#include <barchan/app/json_text.hpp>
 
 namespace barchan::app {
 
@@ -34,6 +33,9 @@ struct RunTable {
 /// empty: to the first point. Errors: InputError where no point has them.
 [[nodiscard]] RunTable tabulate(const Experiment& experiment, const std::string& against);
 
+/// The base's values along the axes; empty where the table has one point.
+[[nodiscard]] Point shown_base(const RunTable& table);
+
 /// Rows of cells with a head: the axes, then numbers as people read them.
 [[nodiscard]] std::vector<std::vector<std::string>> cells_of(const RunTable& table);
 
@@ -41,7 +43,7 @@ struct RunTable {
 [[nodiscard]] std::string microseconds(double time);
 
 /// The numbers of a run.
-[[nodiscard]] nlohmann::ordered_json json_of(const Measurement& run);
-[[nodiscard]] nlohmann::ordered_json json_of(const RunTable& table);
+[[nodiscard]] Json json_of(const Measurement& run);
+[[nodiscard]] Json json_of(const RunTable& table);
 
 }  // namespace barchan::app

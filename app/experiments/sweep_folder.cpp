@@ -5,8 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
+#include <barchan/app/json_text.hpp>
 #include <barchan/core/base/error.hpp>
 #include <barchan/core/io/text_file.hpp>
 #include <barchan/tasks/results/run_summary.hpp>
@@ -15,22 +14,6 @@ namespace fs = std::filesystem;
 
 namespace barchan::app {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-void write_json(const std::string& path, const Json& json) {
-  OutputFile file(path);
-  file.write(json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
-  file.commit();
-}
-
-Json read_json(const std::string& path) {
-  try {
-    return Json::parse(read_text_file(path));
-  } catch (const Json::exception&) {
-    throw InputError(SourcePlace{path, 0, 0}, "is no JSON of barchan", "give another --out");
-  }
-}
 
 /// What every run of a sweep has in common.
 Json identity(const SweepArguments& arguments) {
@@ -64,21 +47,21 @@ Json axes_of(const SweepPlan& plan, const Json& earlier) {
 
 SweepFolder::SweepFolder(const SweepPlan& plan, const SweepArguments& arguments)
     : path_(plan.folder()), keeps_(arguments.keep) {
-  check(plan, arguments);
+  check(arguments);
   std::error_code failed;
   fs::create_directories(path_ + "/runs", failed);
   if (failed)
     throw InputError(SourcePlace{path_, 0, 0}, "cannot be made: " + failed.message(),
                      "give another --out");
   const std::string file = path_ + "/sweep.json";
-  Json earlier = fs::exists(file) ? read_json(file).value("axes", Json()) : Json();
   Json json = identity(arguments);
-  json["axes"] = axes_of(plan, earlier);
+  const Json before = read_json(file);
+  json["axes"] = axes_of(plan, before.is_object() ? before.value("axes", Json()) : Json());
   json["version"] = version();
   write_json(file, json);
 }
 
-void SweepFolder::check(const SweepPlan& /*plan*/, const SweepArguments& arguments) const {
+void SweepFolder::check(const SweepArguments& arguments) const {
   const std::string file = path_ + "/sweep.json";
   if (!fs::exists(path_)) return;
   if (!fs::is_directory(path_) || (!fs::exists(file) && !fs::is_empty(path_)))

@@ -37,7 +37,7 @@ class SweepFolder {
   [[nodiscard]] static std::string last_words(const std::string& log);
 
  private:
-  void check(const SweepPlan& plan, const SweepArguments& arguments) const;
+  void check(const SweepArguments& arguments) const;
 
   std::string path_;
   bool keeps_;

@@ -24,17 +24,14 @@ void print_notes(const RunTable& table, const char* begin) {
 }
 
 std::string heading(const RunTable& table, const Experiment& experiment) {
-  const nlohmann::json& run = experiment.runs.front().run;
+  const Json& run = experiment.runs.front().run;
   return fmt::format("{}: {}, {} particles{}{}", experiment.path, run.value("deck", "?"),
                      grouped(run.value("particles", std::int64_t{0})),
                      table.common.empty() ? "" : "; ", text_of(table.common));
 }
 
 std::string base_text(const RunTable& table) {
-  Point shown;
-  for (const AxisValue& at : table.base) {
-    if (!has(table.common, {at})) shown.push_back(at);
-  }
+  const Point shown = shown_base(table);
   if (shown.empty()) return "Medians.";
   return "Medians. Ratio: of the step to that of " + text_of(shown) + ".";
 }
@@ -64,8 +61,8 @@ void print_markdown(const RunTable& table, const Experiment& experiment) {
 }
 
 /// A field of a CSV file, in quotes where it needs them.
-std::string field(const nlohmann::ordered_json& value) {
-  std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+std::string field(const Json& value) {
+  std::string text = value.is_string() ? value.get<std::string>() : compact_text(value);
   if (text.find_first_of(",\"\n") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
@@ -74,7 +71,7 @@ std::string field(const nlohmann::ordered_json& value) {
 
 /// Runs of a folder may have other axes than the first one: columns are those of all.
 void print_csv(const Experiment& experiment) {
-  std::vector<nlohmann::ordered_json> rows;
+  std::vector<Json> rows;
   std::vector<std::string> names;
   for (const Measurement& m : experiment.runs) {
     rows.push_back(json_of(m));
@@ -99,7 +96,7 @@ void print_runs(const TableArguments& arguments) {
   const Experiment experiment = read_experiment(arguments.path);
   const RunTable table = tabulate(experiment, arguments.against);
   if (arguments.format == TableFormat::Csv) print_csv(experiment);
-  if (arguments.format == TableFormat::Json) std::printf("%s\n", json_of(table).dump(2).c_str());
+  if (arguments.format == TableFormat::Json) std::puts(indented_text(json_of(table)).c_str());
   if (arguments.format == TableFormat::Markdown) print_markdown(table, experiment);
   if (arguments.format == TableFormat::Text) print_text(table, experiment);
   std::fflush(stdout);

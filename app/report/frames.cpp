@@ -8,7 +8,7 @@
 namespace barchan::app {
 namespace {
 
-/// A column's numbers as floats; empty where there is none.
+/// A column's numbers; empty where there is none.
 std::vector<double> numbers(const VtpPiece& piece, const char* name) {
   const VtpColumn* column = piece.find(name);
   if (column == nullptr) return {};
@@ -62,7 +62,8 @@ Frame read_frame(const std::string& folder, const PvdEntry& particles, const Pvd
     const VtpPiece lines = read_vtp(piece);
     for (const double x : lines.points) frame.bonds.push_back(static_cast<float>(x));
   }
-  if (frame.bonds.size() > 6 * kMostBonds) frame.bonds.clear();
+  frame.hides_bonds = frame.bonds.size() > 6 * kMostBonds;
+  if (frame.hides_bonds) frame.bonds.clear();
   return frame;
 }
 
@@ -81,8 +82,9 @@ Frame frame_of(const LoadedDeck& loaded) {
     g.type = static_cast<std::uint8_t>(p.type);
     frame.grains.push_back(g);
   }
+  frame.hides_bonds = loaded.particles.bonds.size() > kMostBonds;
+  if (frame.hides_bonds) return frame;
   for (const BondData& bond : loaded.particles.bonds) {
-    if (loaded.particles.bonds.size() > kMostBonds) break;
     for (const std::int64_t id : {bond.id_a, bond.id_b}) {
       for (int c = 0; c < 3; ++c)
         frame.bonds.push_back(static_cast<float>(by_id.at(id)->position[c]));

@@ -12,7 +12,7 @@
 
 namespace barchan::app {
 
-/// Bonds beyond these are not shown.
+/// Of more bonds none is shown.
 inline constexpr std::size_t kMostBonds = 200000;
 
 struct Grain {
@@ -28,6 +28,7 @@ struct Frame {
   double time = 0.0;
   std::vector<Grain> grains;  ///< by id
   std::vector<float> bonds;   ///< x y z of both ends
+  bool hides_bonds = false;   ///< there are more than a page takes
 };
 
 /// A snapshot. @param folder  of the files that the entries name; @param bonds  null: none

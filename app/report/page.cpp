@@ -21,7 +21,7 @@ bool is_page(const std::string& path) {
 
 /// JSON that no reader of HTML takes for the end of what it stands in.
 std::string text_of(const PageData& data) {
-  const std::string json = data.dump(-1, ' ', false, PageData::error_handler_t::replace);
+  const std::string json = compact_text(data);
   std::string text;
   text.reserve(json.size());
   for (const char c : json) {

@@ -2,8 +2,7 @@
 
 #include <string>
 
-#include <nlohmann/json.hpp>
-
+#include <barchan/app/json_text.hpp>
 #include <barchan/core/io/base64.hpp>
 
 namespace barchan::app {
@@ -19,7 +18,7 @@ namespace barchan::app {
 ///     run             run.json
 ///     sweep           json_of(RunTable) with axes, base, and links of runs
 ///     machine, deck   {name: value}
-using PageData = nlohmann::ordered_json;
+using PageData = Json;
 
 /// Writes a page that needs nothing but itself. Replaces an earlier page, and no other file.
 /// Errors: InputError where another file has the name; RunError.

@@ -22,7 +22,7 @@ constexpr std::size_t kBytesOfGrain = 11, kMostGrains = 1U << 20;
 std::size_t thin(std::vector<Frame>& frames) {
   std::size_t most = 0;
   for (const Frame& frame : frames) most = std::max(most, frame.grains.size());
-  const std::size_t every = 1 + most / kMostGrains;
+  const std::size_t every = std::max<std::size_t>(1, (most + kMostGrains - 1) / kMostGrains);
   for (Frame& frame : frames) {
     std::erase_if(frame.grains, [&](const Grain& g) { return g.id % std::int64_t(every) != 0; });
   }
@@ -84,12 +84,12 @@ PageData encoded_frame(const Frame& frame, const Ranges& ranges, int dimension,
 }
 
 /// A value of the deck such as domain.lo, or null.
-PageData value_of(const nlohmann::json& deck, const std::string& key) {
+PageData value_of(const PageData& deck, const std::string& key) {
   if (!deck.is_object() || !deck.contains(key) || !deck[key].is_string()) return nullptr;
-  return PageData::parse(deck[key].get<std::string>(), nullptr, false, true);
+  return parsed(deck[key].get<std::string>());
 }
 
-PageData view_of(const std::vector<Frame>& frames, const nlohmann::json& deck) {
+PageData view_of(const std::vector<Frame>& frames, const PageData& deck) {
   Ranges ranges;
   for (const Frame& frame : frames) {
     for (const Grain& g : frame.grains) ranges.take(g);
@@ -133,16 +133,18 @@ std::vector<std::size_t> chosen(std::size_t n, std::size_t most) {
   return picked;
 }
 
-std::string note_of(std::size_t shown, std::size_t all, std::size_t every) {
+std::string note_of(const std::vector<Frame>& frames, std::size_t all, std::size_t every) {
   std::string note;
-  if (shown < all) note = fmt::format("Shown are {} of {} snapshots. ", shown, all);
-  if (every > 1) note += fmt::format("Of every {} particles one is shown.", every);
+  if (frames.size() < all) note = fmt::format("Shown are {} of {} snapshots. ", frames.size(), all);
+  if (every > 1) note += fmt::format("Of every {} particles one is shown. ", every);
+  if (std::any_of(frames.begin(), frames.end(), [](const Frame& f) { return f.hides_bonds; }))
+    note += fmt::format("Of more than {} bonds none is shown.", kMostBonds);
   return note;
 }
 
 }  // namespace
 
-PageData snapshots_view(const std::string& folder, const nlohmann::json& deck,
+PageData snapshots_view(const std::string& folder, const PageData& deck,
                         const ViewOptions& options) {
   const std::string home = folder + "/snapshots/";
   if (!fs::exists(home + "run.pvd")) return {{"frames", PageData::array()}};
@@ -160,28 +162,28 @@ PageData snapshots_view(const std::string& folder, const nlohmann::json& deck,
     const auto with = bonds.find(entry.time);
     return read_frame(home, entry, with == bonds.end() ? nullptr : with->second);
   };
-  std::vector<Frame> frames{read(*particles.back())};
-  const std::size_t bytes = kBytesOfGrain * std::min(frames[0].grains.size() + 1, kMostGrains);
+  Frame last = read(*particles.back());
+  const std::size_t bytes = kBytesOfGrain * std::min(last.grains.size() + 1, kMostGrains);
   const auto picked =
       chosen(particles.size(), std::min(static_cast<std::size_t>(std::max(1, options.most_frames)),
                                         options.most_bytes / bytes));
-  std::vector<Frame> all;
+  std::vector<Frame> all;  // in the order of time, the last one last
   for (const std::size_t k : picked)
-    all.push_back(k + 1 == particles.size() ? std::move(frames[0]) : read(*particles[k]));
+    all.push_back(k + 1 == particles.size() ? std::move(last) : read(*particles[k]));
   const std::size_t every = thin(all);
   PageData view = view_of(all, deck);
-  view["note"] = note_of(all.size(), particles.size(), every);
+  view["note"] = note_of(all, particles.size(), every);
   return view;
 }
 
 PageData deck_view(const LoadedDeck& loaded) {
   std::vector<Frame> frames{frame_of(loaded)};
   const std::size_t every = thin(frames);
-  nlohmann::json deck = nlohmann::json::object();
+  PageData deck = PageData::object();
   for (const auto& [key, value] : loaded.deck.keys) deck[key] = value;
   PageData view = view_of(frames, deck);
   view["ranks"] = PageData::array();  // nobody owns them yet
-  view["note"] = note_of(1, 1, every);
+  view["note"] = note_of(frames, 1, every);
   return view;
 }
 

@@ -22,14 +22,6 @@ namespace fs = std::filesystem;
 namespace barchan::app {
 namespace {
 
-PageData json_in(const std::string& path) {
-  if (!fs::exists(path)) return nullptr;
-  PageData json = PageData::parse(read_text_file(path), nullptr, false);
-  if (!json.is_object())
-    throw InputError(SourcePlace{path, 0, 0}, "is no JSON of barchan", "run again");
-  return json;
-}
-
 std::string name_of(const std::string& path) {
   const fs::path whole = fs::absolute(path).lexically_normal();
   return whole.has_filename() ? whole.filename().string() : whole.parent_path().filename().string();
@@ -37,7 +29,7 @@ std::string name_of(const std::string& path) {
 
 /// Of a run that has ended: its numbers, machine and deck.
 void add_run(const std::string& path, PageData& data) {
-  PageData run = json_in(path);
+  PageData run = read_json(path);
   data["facts"] = PageData::array();
   for (const auto& row : run_rows(read_text_file(path), path)) data["facts"].push_back(row);
   data["machine"] = run.value("machine", PageData::object());
@@ -53,9 +45,8 @@ PageData run_data(const std::string& folder, const ReportArguments& arguments) {
   const std::string json = folder + "/run.json", series = folder + "/series.csv",
                     trace = folder + "/trace.json";
   if (fs::exists(json)) add_run(json, data);
-  const nlohmann::json deck =
-      data.contains("deck") ? nlohmann::json(data["deck"]) : nlohmann::json();
-  data["view"] = snapshots_view(folder, deck, {.most_frames = arguments.frames});
+  data["view"] =
+      snapshots_view(folder, data.value("deck", PageData()), {.most_frames = arguments.frames});
   if (fs::exists(series)) data["series"] = series_data(series);
   if (arguments.steps && !fs::exists(trace))
     throw InputError(SourcePlace{trace, 0, 0}, "there is no trace", "run with --trace");
@@ -69,10 +60,7 @@ PageData sweep_data(const Experiment& experiment, const ReportArguments& argumen
   const RunTable table = tabulate(experiment, "");
   PageData sweep = json_of(table);
   sweep["axes"] = table.axes;
-  Point base;
-  for (const AxisValue& at : table.base) {
-    if (!has(table.common, {at})) base.push_back(at);
-  }
+  const Point base = shown_base(table);
   sweep["base"] = base.empty() ? "the only point" : text_of(base);
   const fs::path home = fs::absolute(page).parent_path();
   for (PageData& point : sweep["points"]) {
@@ -82,15 +70,15 @@ PageData sweep_data(const Experiment& experiment, const ReportArguments& argumen
       run["link"] = fs::relative(fs::absolute(own), home).string();
     }
   }
-  const nlohmann::json& first = experiment.runs.front().run;
+  const PageData& first = experiment.runs.front().run;
   PageData data{
       {"title", name_of(experiment.path)},
       {"about",
        fmt::format("a sweep of {}, {} particles; {}", first.value("deck", "a deck"),
                    grouped(first.value("particles", std::int64_t{0})), text_of(table.common))}};
   data["sweep"] = std::move(sweep);
-  data["machine"] = first.value("machine", nlohmann::json::object());
-  data["deck"] = first.value("deck_keys", nlohmann::json::object());
+  data["machine"] = first.value("machine", PageData::object());
+  data["deck"] = first.value("deck_keys", PageData::object());
   return data;
 }
 

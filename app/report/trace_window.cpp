@@ -39,9 +39,9 @@ class Events {
       while (std::getline(file, line)) {
         if (!line.starts_with("{\"ph\"")) continue;
         if (line.back() == ',') line.pop_back();
-        take(nlohmann::json::parse(line));
+        take(parsed(line));
       }
-    } catch (const nlohmann::json::exception&) {
+    } catch (const Json::exception&) {
       slices.clear();
     }
     if (slices.empty())
@@ -55,7 +55,7 @@ class Events {
   std::map<int, int> workers;  ///< of each rank
 
  private:
-  void take(const nlohmann::json& event) {
+  void take(const Json& event) {
     const std::string kind = event.at("ph");
     const int rank = event.at("pid");
     if (kind == "M") {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+
 #include <barchan/app/texts/texts.hpp>
 #include <barchan/tasks/simulation.hpp>
 

@@ -1,14 +1,12 @@
 #include <string_view>
 
-#include <nlohmann/json.hpp>
-
+#include <barchan/app/json_text.hpp>
 #include <barchan/app/texts/texts.hpp>
 #include <barchan/core/deck/schema.hpp>
 
 namespace barchan::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using T = deck::ValueType;
 
 Json object_of(std::string_view table);
@@ -150,7 +148,7 @@ std::string deck_schema() {
                      {"particle", object_of("particle")},
                      {"size class", object_of("size class")},
                      {"particles", sources()}};
-  return schema.dump(2) + "\n";
+  return indented_text(schema) + "\n";
 }
 
 }  // namespace barchan::app

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
+
 #include <barchan/app/texts/texts.hpp>
 
 namespace barchan::app {

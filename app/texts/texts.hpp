@@ -3,9 +3,12 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 // What other programs read about the command; all follows from the definition of the command line.
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
 
 namespace barchan::app {
 
