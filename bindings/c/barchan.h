@@ -6,11 +6,11 @@
  *     barchan_run(sim, 100, NULL);
  *     barchan_close(sim);
  *
- * MPI is the caller's; `comm` is a communicator's Fortran handle, MPI_Comm_c2f(communicator). Calls
- * marked [all] are made by all its ranks in the same order; the others are local. A simulation
- * takes calls of one thread at a time. Every call returns one of the codes below; texts of errors
- * come from barchan_error(). Units are SI; vectors have three components, in 2D too, unless a view
- * says otherwise.
+ * MPI is the caller's; `comm` is the handle of a communicator as Fortran has it, an integer;
+ * docs/library.md says how to get it. All ranks of the communicator make the calls marked [all], in
+ * the same order; the others are local. A simulation takes calls of one thread at a time. Every
+ * call returns one of the codes below; barchan_error() gives the text of an error. Units are SI;
+ * vectors have three components, in 2D too, unless a view says otherwise.
  */
 #ifndef BARCHAN_H
 #define BARCHAN_H
@@ -45,7 +45,7 @@ void barchan_abi(int* major, int* minor);
 
 /* For programs without an MPI of their own: starts it unless it runs, and ends it at exit. */
 int barchan_start_mpi(void);
-int barchan_world(void); /* the handle of MPI_COMM_WORLD */
+int barchan_world(void); /* the handle of the communicator of all ranks */
 
 /* ---- from a deck to its end
  * settings: one a line, NULL or empty for none: `key=value` as --set has them, and `--threads=2`,
@@ -56,7 +56,7 @@ int barchan_open_text(const char* toml, const char* settings, int comm, barchan_
 int barchan_restore(const char* deck, const char* settings, const char* checkpoint, int comm,
                     barchan_sim** sim);
 int barchan_write_checkpoint(barchan_sim* sim, const char* folder); /* [all] */
-int barchan_close(barchan_sim* sim); /* [all]; its views and states are then gone */
+int barchan_close(barchan_sim* sim); /* [all]; ends its views; states are still to be freed */
 
 /* done: steps done, or NULL. Each [all]. */
 int barchan_run(barchan_sim* sim, int64_t steps, int64_t* done);
