@@ -75,6 +75,11 @@ def views(barchan):
     sim.set_loads(brick.ids, np.tile([0.5, 0.25], (len(brick), 1)))
     assert not sim.gather("torque")[1].any()
     assert np.array_equal(forces, np.tile([0.5, 0.25, 0.0], (len(ids), 1)))
+    for n in (2, 3, 4):  # numbers about z, not a vector for all, for as many particles as a vector has components, too
+        about_z = 1e-3 * np.arange(1.0, n + 1)
+        sim.set_loads(ids[:n], np.zeros((n, 2)), about_z)
+        torques = sim.gather("torque")[1][:n]
+        assert np.allclose(torques[:, 2], about_z, rtol=1e-12) and not torques[:, :2].any(), torques
     sim.run(300)
     raises(barchan.StaleView, "owned()", lambda: brick.positions)
     raises(barchan.StaleView, "over", lambda: len(brick))

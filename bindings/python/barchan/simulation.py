@@ -192,7 +192,11 @@ class Simulation:
         return self._inside.gather(_field(field))
 
     def scatter(self, field: str, ids: Any, values: Any) -> None:
-        """Sets velocity, angular_velocity, force or torque of any particles. Collective; the same lists on every rank."""
+        """Sets velocity, angular_velocity, force or torque of any particles. Collective; the same lists on every rank.
+
+        Args:
+            values: (n, 3), in 2D also (n, 2) [m/s, N]; angular_velocity and torque in 2D also (n) about z [rad/s, N·m].
+        """
         ids = np.asarray(ids, dtype=np.int64).ravel()
         what = _field(field)
         rows = _turns if field in ("angular_velocity", "torque") else _vectors
@@ -229,6 +233,8 @@ class Simulation:
         ids = np.asarray(ids, dtype=np.int64).ravel()
         if len(ids) != n:
             raise ValueError(f"{len(ids)} ids for {n} particles")
+        if np.shape(omega) == (3,):  # one vector for all, of three particles, too
+            omega = np.broadcast_to(omega, (n, 3))
         motion = np.hstack([_vectors(position, n, "position"), _vectors(velocity, n, "velocity"),
                             _turns(omega, n, "omega")])
         self._inside.add(ids, types, np.broadcast_to(np.asarray(radius, dtype=float), n),
@@ -309,7 +315,7 @@ def _vectors(values: Any, n: int, what: str) -> np.ndarray:
 def _turns(values: Any, n: int, what: str) -> np.ndarray:
     """(n, 3) from that, or from (n): about z."""
     values = np.asarray(values, dtype=float)
-    if values.ndim == 0 or (values.shape == (n,) and n not in (0, 3)) or values.shape == (n, 1):
+    if values.ndim == 0 or values.shape in ((n,), (n, 1)):
         rows = np.zeros((n, 3))
         rows[:, 2] = values.reshape(-1) if values.ndim else values
         return rows
