@@ -168,6 +168,9 @@ class Simulation::EngineOf final : public Simulation::Engine {
   /// Of this rank, others have lane < 0. Collective. Errors: InputError for an id that there is not
   [[nodiscard]] std::vector<ParticlePlace> find_all(std::span<const std::int64_t> ids,
                                                     const char* call);
+  /// Books the kinetic energy of what is of this rank as work of callers. Local.
+  /// @param share  -1 before a caller changes it, 1 after
+  void book_kinetic(std::span<const ParticlePlace> places, double share);
 
   RunParts<Dim> parts_;
   StepGraph<Dim> graph_;

@@ -102,6 +102,16 @@ Gathered Simulation::EngineOf<Dim>::gather(ParticleField field) {
 }
 
 template <int Dim>
+void Simulation::EngineOf<Dim>::book_kinetic(std::span<const ParticlePlace> places, double share) {
+  if (!parts_.world.accounts) return;
+  for (const ParticlePlace& at : places) {
+    if (at.lane < 0) continue;
+    Brick<Dim>& brick = parts_.strip.lane(at.lane).brick;
+    brick.works[EnergyWorks::Callers].add(share * kinetic_energy(brick.store, at.row));
+  }
+}
+
+template <int Dim>
 void Simulation::EngineOf<Dim>::scatter(ParticleField field, std::span<const std::int64_t> ids,
                                         std::span<const double> values) {
   const bool is_motion =
@@ -115,7 +125,10 @@ void Simulation::EngineOf<Dim>::scatter(ParticleField field, std::span<const std
                          "leave it out");
     }
   });
-  if (!is_motion) {
+  if (is_motion) {
+    begin_account();
+    book_kinetic(found, -1.0);
+  } else {
     for (Lane<Dim>& lane : parts_.strip.lanes()) make_room(lane.brick.store);
   }
   for (std::size_t k = 0; k < ids.size(); ++k) {
@@ -124,14 +137,17 @@ void Simulation::EngineOf<Dim>::scatter(ParticleField field, std::span<const std
                 values.data() + 3 * k);
   }
   if (!is_motion) return;
+  book_kinetic(found, 1.0);
   schedule_.amend(step_, 0, lists_.top_speed());
   renew_lists();  // ghosts get the new velocities, too
 }
 
 template Gathered Simulation::EngineOf<2>::gather(ParticleField);
+template void Simulation::EngineOf<2>::book_kinetic(std::span<const ParticlePlace>, double);
 template void Simulation::EngineOf<2>::scatter(ParticleField, std::span<const std::int64_t>,
                                                std::span<const double>);
 template Gathered Simulation::EngineOf<3>::gather(ParticleField);
+template void Simulation::EngineOf<3>::book_kinetic(std::span<const ParticlePlace>, double);
 template void Simulation::EngineOf<3>::scatter(ParticleField, std::span<const std::int64_t>,
                                                std::span<const double>);
 

@@ -93,6 +93,7 @@ std::vector<ParticlePlace> Simulation::EngineOf<Dim>::find_all(std::span<const s
 template <int Dim>
 void Simulation::EngineOf<Dim>::remove(std::span<const std::int64_t> ids) {
   (void)find_all(ids, "remove");
+  begin_account();
   for (Lane<Dim>& lane : parts_.strip.lanes()) lane.rebuild.remove(ids);
   const auto count = static_cast<std::int64_t>(ids.size());
   population_.size -= count;
@@ -114,6 +115,7 @@ void Simulation::EngineOf<Dim>::add(const ParticleSet& newcomers) {
     }
     check_step(parts_, newcomers);
   });
+  begin_account();
   double speed = 0.0;
   for (const ParticleData& p : newcomers.particles) {
     speed = std::max(speed, p.velocity.norm());
@@ -124,6 +126,10 @@ void Simulation::EngineOf<Dim>::add(const ParticleSet& newcomers) {
   schedule_.amend(step_, count, speed);
   parts_.rebuild.take_in(newcomers.particles);
   renew_lists();
+  for (const ParticleData& p : newcomers.particles) {
+    const ParticlePlace place = index().find(std::span(&p.id, 1)).first;
+    book_kinetic(std::span(&place, 1), 1.0);
+  }
 }
 
 template std::vector<ParticlePlace> Simulation::EngineOf<2>::find_all(std::span<const std::int64_t>,

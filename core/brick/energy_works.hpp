@@ -19,7 +19,7 @@ struct EnergyWorks {
     Contacts,  ///< forces of pairs and walls on particles
     Bonds,     ///< forces of bonds on particles
     Gravity,
-    Callers,       ///< forces and torques that a caller gives
+    Callers,       ///< forces and torques that a caller gives, velocities that it sets or adds
     LocalDamping,  ///< takes, so it is negative
     Departed,      ///< kinetic energy of particles that have left
     StartKinetic,  ///< energies where the account began

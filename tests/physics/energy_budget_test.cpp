@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -165,6 +167,36 @@ bond = "glue"
   EXPECT_NEAR(after.budget.bond_loss + after.kinetic + after.elastic, after.budget.caller_work,
               1e-9 * after.budget.caller_work);
   EXPECT_GT(after.budget.bond_loss, 0.5 * after.budget.caller_work);
+}
+
+TEST(EnergyBudget, ClosesWhenACallerSetsVelocitiesAddsAndRemoves) {
+  const std::string deck =
+      "dimension = 3\n" + time(1e-4) + kFloor + kLinear + ball(1.0, "[1.0, 0.0, 0.0]");
+  Simulation run = simulate(deck);
+  const double start = balance_of(run).kinetic;  // at 1 m/s
+  const std::vector<std::int64_t> first{1};
+  ParticleData newcomer;
+  newcomer.id = 2;
+  newcomer.radius = 0.1;
+  newcomer.density = 1000.0;
+  newcomer.position = Vec3(3.0, 0.0, 1.0);
+  newcomer.velocity = Vec3(-2.0, 0.0, 0.0);
+
+  run.scatter(ParticleField::Velocity, first, std::vector<double>{3.0, 0.0, 0.0});
+  EXPECT_NEAR(balance_of(run).budget.caller_work, (9.0 - 1.0) * start, 1e-12 * start);
+  run.add(std::span(&newcomer, 1));
+  EXPECT_NEAR(balance_of(run).budget.caller_work, (9.0 - 1.0 + 4.0) * start, 1e-12 * start);
+  run.remove(first);
+  run.run(10);
+  const Balance after = balance_of(run);
+  EXPECT_NEAR(after.budget.departed, 9.0 * start, 1e-12 * start);
+  EXPECT_NEAR(after.kinetic, 4.0 * start, 1e-12 * start);
+  EXPECT_NEAR(after.budget.error, 0.0, 1e-12 * start);
+
+  Simulation fresh = simulate(deck);  // the account begins before the first change
+  fresh.remove(first);
+  EXPECT_NEAR(balance_of(fresh).budget.departed, start, 1e-12 * start);
+  EXPECT_NEAR(balance_of(fresh).budget.error, 0.0, 1e-12 * start);
 }
 
 }  // namespace
