@@ -139,15 +139,13 @@ void Simulation::EngineOf<Dim>::set_loads(const Loads& loads) {
           loads.ids[k], communicator_.rank()));
   }
   for (Lane<Dim>& lane : parts_.strip.lanes()) make_room(lane.brick.store);
-  constexpr double kNone[3] = {};
-  const double *force = loads.forces.data(),
-               *torque = loads.torques.empty() ? kNone : loads.torques.data();
-  const int stride = loads.torques.empty() ? 0 : 3;
+  std::size_t at = 0;
   for (const auto& [first, length] : runs) {
     ParticleStore<Dim>& store = parts_.strip.lane(first.lane).brick.store;
-    for (std::int32_t i = 0; i < static_cast<std::int32_t>(length); ++i, force += 3) {
-      put_load(store, first.row + i, force, torque);
-      torque += stride;
+    for (std::int32_t i = 0; i < static_cast<std::int32_t>(length); ++i, at += 3) {
+      const std::int32_t row = first.row + i;
+      put_load(store, row, &loads.forces[at], loads.torques.empty() ? nullptr : &loads.torques[at]);
+      if (loads.torques.empty()) clear_torque(store, row);
     }
   }
 }

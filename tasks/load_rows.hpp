@@ -11,8 +11,6 @@
 
 namespace barchan {
 
-template <int Dim>
-inline constexpr int kTurns = Dim == 2 ? 1 : 3;
 /// Where the c-th number of an angular velocity or torque is among three.
 template <int Dim>
 [[nodiscard]] constexpr int place_of_turn(int c) {
@@ -26,6 +24,7 @@ void make_room(ParticleStore<Dim>& store) {
   store.external.resize(static_cast<std::size_t>(store.num_owned) * kForce, 0.0);
 }
 
+/// @param force, torque  three numbers each; null: as it was
 template <int Dim>
 void put_load(ParticleStore<Dim>& store, std::int32_t row, const double* force,
               const double* torque) {
@@ -36,6 +35,14 @@ void put_load(ParticleStore<Dim>& store, std::int32_t row, const double* force,
   const double r = store.radius(row);
   for (int c = 0; c < kSpins<Dim>; ++c)
     to[Layout<Dim>::kTorque + c] = torque[place_of_turn<Dim>(c)] / r;
+}
+
+/// Without a look at the radius, which lies far from the loads.
+template <int Dim>
+void clear_torque(ParticleStore<Dim>& store, std::int32_t row) {
+  std::fill_n(store.external.data() + Layout<Dim>::kTorque +
+                  std::size_t{Layout<Dim>::kForce} * static_cast<std::size_t>(row),
+              kSpins<Dim>, 0.0);
 }
 
 }  // namespace barchan

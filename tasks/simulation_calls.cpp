@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdint>
 #include <initializer_list>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -18,9 +19,13 @@ namespace barchan {
 namespace {
 
 bool are_finite(std::span<const double> values) {
-  double sums[4] = {};  // of zeros, or not a number
-  for (std::size_t k = 0; k < values.size(); ++k) sums[k % 4] += 0.0 * values[k];
-  return sums[0] + sums[1] + sums[2] + sums[3] == 0.0;
+  constexpr std::size_t kWidth = 8;  // chains of additions that do not wait for each other
+  double sums[kWidth] = {};          // of zeros, or not a number
+  std::size_t k = 0;
+  for (; k + kWidth <= values.size(); k += kWidth)
+    for (std::size_t c = 0; c < kWidth; ++c) sums[c] += 0.0 * values[k + c];
+  for (; k < values.size(); ++k) sums[0] += 0.0 * values[k];
+  return std::all_of(std::begin(sums), std::end(sums), [](double sum) { return sum == 0.0; });
 }
 
 /// Errors: InputError on every rank: ranks give different numbers, or some that are not finite.
