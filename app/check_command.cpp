@@ -93,38 +93,58 @@ void print_walls(const Model& model) {
   std::printf("Walls:\n%s", table(rows, 3).c_str());
 }
 
-void print_strips(const LoadedDeck& loaded, int wanted) {
-  const StripPlan plan = plan_strips(loaded.deck.model, loaded.particles);
-  check_ranks(wanted, loaded.deck.model, static_cast<int>(plan.slab_counts.size()));
-  const auto num_particles = static_cast<double>(loaded.particles.particles.size());
-  const double bytes =
-      static_cast<double>(memory_estimate(loaded.deck.model, loaded.particles)) / num_particles;
+/// In one line of a table, for so many ranks of one thread.
+std::vector<std::string> row_of_ranks(const CutPlan& plan, const CutShape& shape, double bytes_each,
+                                      double bytes_of_all) {
+  const auto counts = plan.rank_counts(shape);
+  const auto [lo, hi] = std::minmax_element(counts.begin(), counts.end());
+  const std::string few = grouped(*lo), many = grouped(*hi);
+  const auto num_particles = static_cast<double>(plan.cells.size());
+  return {std::to_string(shape.num_ranks()), describe(shape, plan.room),
+          few == many ? few : few + " … " + many,
+          fmt::format("{:.2f}", static_cast<double>(*hi) * shape.num_ranks() / num_particles),
+          readable_bytes(bytes_each * static_cast<double>(*hi) + bytes_of_all)};
+}
+
+void print_cuts(const LoadedDeck& loaded, int wanted) {
+  const Model& model = loaded.deck.model;
+  const CutPlan plan = plan_cuts(model, loaded.particles);
+  const double bytes = static_cast<double>(memory_estimate(model, loaded.particles)) /
+                       static_cast<double>(loaded.particles.particles.size());
   const auto all =
       static_cast<double>(loaded.particles.particles.capacity() * sizeof(ParticleData) +
                           loaded.particles.bonds.capacity() * sizeof(BondData));
+  // A deck that asks for bricks is for one number of ranks.
+  CutRequest request{model.domain.cuts, wanted, 1, false, model.domain.place};
+  const auto most_bricks = static_cast<std::int64_t>(plan.room.num_cells());
   std::vector<int> ranks{1, 2, 4, 8, 16, 32};
-  if (wanted > 0) ranks = {wanted};
-  Rows rows{{"ranks", "particles a strip", "largest / mean", "memory a rank"}};
-  for (const int p : ranks) {
-    if (wanted == 0 && p > plan.most_ranks()) break;
-    const auto counts = plan.strip_counts(p);
-    const auto [lo, hi] = std::minmax_element(counts.begin(), counts.end());
-    const std::string few = grouped(*lo), many = grouped(*hi);
-    rows.push_back({std::to_string(p), few == many ? few : few + " … " + many,
-                    fmt::format("{:.2f}", static_cast<double>(*hi) * p / num_particles),
-                    readable_bytes(bytes * static_cast<double>(*hi) + all)});
+  if (wanted > 0) {
+    ranks = {wanted};
+  } else if (model.domain.cuts.kind == CutWish::Kind::Bricks) {
+    request.wish.kind = CutWish::Kind::Auto;
   }
-  std::printf("Strips: cut along %c in cells of %.3g m; at most %d ranks fit\n%s", "xyz"[plan.axis],
-              plan.slab_width, plan.most_ranks(), table(rows).c_str());
+  Rows rows{{"ranks", "cut into", "particles a rank", "largest / mean", "memory a rank"}};
+  for (const int p : ranks) {
+    const bool is_strips = request.wish.kind == CutWish::Kind::Strips;
+    if (wanted == 0 && p > (is_strips ? plan.room.most_strips() : most_bricks)) break;
+    request.ranks = p;
+    rows.push_back(row_of_ranks(plan, choose_cuts(request, plan.room), bytes, all));
+  }
+  const auto cells = along_xyz(plan.room.cells, plan.room);
+  std::string grid = fmt::format("{} x {}", cells[0], cells[1]);
+  if (model.dimension == 3) grid += fmt::format(" x {}", cells[2]);
+  std::printf(
+      "Cuts: %s cells, %.3g m long along %c; at most %d ranks fit as strips, %s as bricks\n%s",
+      grid.c_str(), plan.cell[0], "xyz"[plan.room.axes[0]], plan.room.most_strips(),
+      grouped(most_bricks).c_str(), table(rows).c_str());
   std::printf(
       "  Memory: %.0f bytes a particle at the start, up to twice that when packed, and %s a rank "
       "for "
       "set-up.\n",
       bytes, readable_bytes(all).c_str());
-  std::printf(
-      "  Contact search: %s, skin %.3g m\n",
-      loaded.deck.model.search.kind == ContactSearchKind::Cells ? "cells" : "all-pairs",
-      loaded.deck.model.search.skin.value_or(default_skin(loaded.deck.model, loaded.particles)));
+  std::printf("  Contact search: %s, skin %.3g m\n",
+              model.search.kind == ContactSearchKind::Cells ? "cells" : "all-pairs",
+              model.search.skin.value_or(default_skin(model, loaded.particles)));
 }
 
 void print_stages(const Model& model) {
@@ -222,7 +242,7 @@ void check_deck(const CheckArguments& arguments) {
   print_impact(loaded);
   print_warnings(speed_warnings(model, loaded.particles));
   print_warnings(precision_warnings(model, loaded.particles));
-  print_strips(loaded, arguments.ranks);
+  print_cuts(loaded, arguments.ranks);
   std::fflush(stdout);
   check_precision(model, loaded.particles);
   check_time_step(model, limits);

@@ -72,6 +72,12 @@ void add_run(CLI::App& root, RunArguments& run, Words& words) {
       ->type_name("NAME")
       ->check(not_empty());
   command
+      .add_option("--cuts", run.options.cuts,
+                  "How ranks share the domain, instead of the deck's domain.cuts: auto, strips, or "
+                  "bricks along x, y and z as in 2,2,1")
+      ->type_name("CUTS")
+      ->check(not_empty());
+  command
       .add_option("--record", run.record,
                   "With --exchange replay: the exchange of the recorded run; default: auto")
       ->type_name("NAME")

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <barchan/comm/topology/strips.hpp>
 #include <barchan/core/base/error.hpp>
 #include <barchan/core/base/exact_sum.hpp>
 #include <barchan/core/laws/laws.hpp>
@@ -16,7 +15,7 @@
 #include <barchan/core/simd/scalar.hpp>
 #include <barchan/tasks/agree.hpp>
 #include <barchan/tasks/checkpoint_read.hpp>
-#include <barchan/tasks/strip_plan.hpp>
+#include <barchan/tasks/cuts.hpp>
 
 namespace barchan {
 namespace {
@@ -69,8 +68,8 @@ void take_links(const CheckpointShare& from, const Ids& mine, std::size_t histor
   }
 }
 
-/// Loads the shares of one rank. Files name where along the strip axis their particles lie; links
-/// reach as far as a slab is wide.
+/// Loads the shares of one rank. Files name where along the grid's first axis their particles lie;
+/// links reach as far as a slab is wide.
 template <int Dim>
 class Loader {
  public:
@@ -79,35 +78,37 @@ class Loader {
       : communicator_(communicator),
         checkpoint_(checkpoint),
         limits_(limits_of(model)),
-        grid_(grid) {}
+        grid_(grid),
+        counts_(room_of(grid, 0).cells) {}
 
-  /// Particles a slab, and the totals. Collective.
+  /// Particles by coordinates of cells, and the totals. Collective.
   void count() {
-    const auto num_slabs = static_cast<std::size_t>(grid_.num_slabs());
-    std::vector<std::int64_t> sums(num_slabs + num_totals(limits_.num_walls), 0);
+    std::vector<std::int64_t> sums(counts_.all().size() + num_totals(limits_.num_walls), 0);
     agree(communicator_, [&] {
       const auto stride = static_cast<std::size_t>(communicator_.size());
       for (auto r = static_cast<std::size_t>(communicator_.rank()); r < num_files(); r += stride)
         count_file(r, sums);
     });
+    std::ranges::copy(counts_.all(), sums.begin());
     communicator_.allreduce_sum(std::span<std::int64_t>(sums));
     communicator_.allreduce_max(std::span(&outrun_, 1));
-    slab_counts_.assign(sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(num_slabs));
-    totals_.assign(sums.begin() + static_cast<std::ptrdiff_t>(num_slabs), sums.end());
+    const auto totals = sums.begin() + static_cast<std::ptrdiff_t>(counts_.all().size());
+    std::copy(sums.begin(), totals, counts_.all().begin());
+    totals_.assign(totals, sums.end());
   }
 
-  LoadedShares load(int num_lanes) {
-    LoadedShares loaded{
-        cut_equal(slab_counts_, communicator_.size() * num_lanes, kMinSlabs), {}, totals_};
+  LoadedShares load(const LaneMap& lanes) {
+    LoadedShares loaded{equal_cuts(counts_, lanes.shape()), {}, totals_};
+    const int num_lanes = lanes.shape().num_lanes();
     loaded.shares.resize(static_cast<std::size_t>(num_lanes));
-    const int first = communicator_.rank() * num_lanes;
-    begin_ = loaded.cuts[static_cast<std::size_t>(first)];
-    end_ = loaded.cuts[static_cast<std::size_t>(first + num_lanes)];
-    const std::span<const int> cuts(loaded.cuts.data() + first,
-                                    static_cast<std::size_t>(num_lanes) + 1);
+    begin_ = grid_.num_slabs();
+    for (int l = 0; l < num_lanes; ++l) {
+      boxes_.push_back(placement<Dim>(lanes, loaded.cuts, communicator_.rank(), l, {}).box);
+      begin_ = std::min(begin_, boxes_.back().lo[0]);
+      end_ = std::max(end_, boxes_.back().hi[0]);
+    }
     agree(communicator_, [&] {
-      for_each_file(
-          0, [&](const CheckpointShare& share) { take_particles(share, cuts, loaded.shares); });
+      for_each_file(0, [&](const CheckpointShare& share) { take_particles(share, loaded.shares); });
       std::vector<Ids> ids;
       for (const CheckpointShare& share : loaded.shares)
         ids.emplace_back(share.ids.begin(), share.ids.end());
@@ -130,21 +131,22 @@ class Loader {
   [[nodiscard]] CheckpointShare read(std::size_t r) const {
     return RankFile(checkpoint_.path, checkpoint_.manifest, r).view().share(limits_);
   }
-  [[nodiscard]] std::size_t slab(const CheckpointShare& share, std::size_t p) const {
-    return static_cast<std::size_t>(grid_.coordinate(share.positions.data() + p * Dim, 0));
+  [[nodiscard]] CellAt<Dim> cell(const CheckpointShare& share, std::size_t p) const {
+    return grid_.cell(share.positions.data() + p * Dim);
   }
 
+  /// @param sums  the totals of this rank's files, behind room for counts
   void count_file(std::size_t r, std::vector<std::int64_t>& sums) {
     const CheckpointShare share = read(r);
     const ManifestFile& listed = checkpoint_.manifest.files[r];
     for (std::size_t p = 0; p < share.ids.size(); ++p) {
       const double at = grid_.along_strips(share.positions.data() + p * Dim);
       if (!(at >= listed.lo && at <= listed.hi)) refuse(r, "has particles outside its strip");
-      ++sums[slab(share, p)];
+      counts_.add<Dim>(cell(share, p));
     }
     for (const double distance2 : share.outruns) outrun_ = std::max(outrun_, distance2);
     for (std::size_t t = 0; t < share.totals.size(); ++t)
-      sums[static_cast<std::size_t>(grid_.num_slabs()) + t] += share.totals[t];
+      sums[counts_.all().size() + t] += share.totals[t];
     const bool is_whole =
         static_cast<std::int64_t>(share.ids.size()) == listed.particles &&
         static_cast<std::int64_t>(share.contact_ids.size() / 2) == listed.contacts &&
@@ -176,13 +178,12 @@ class Loader {
     return false;
   }
 
-  void take_particles(const CheckpointShare& from, std::span<const int> cuts,
-                      std::vector<CheckpointShare>& shares) const {
+  void take_particles(const CheckpointShare& from, std::vector<CheckpointShare>& shares) const {
     for (std::size_t p = 0; p < from.ids.size(); ++p) {
-      const auto s = static_cast<int>(slab(from, p));
-      if (s < begin_ || s >= end_) continue;
-      const auto lane = std::upper_bound(cuts.begin(), cuts.end(), s) - cuts.begin() - 1;
-      take_particle<Dim>(from, p, shares[static_cast<std::size_t>(lane)]);
+      const CellAt<Dim> at = cell(from, p);
+      for (std::size_t l = 0; l < boxes_.size(); ++l) {
+        if (boxes_[l].contains(at)) take_particle<Dim>(from, p, shares[l]);
+      }
     }
   }
 
@@ -190,9 +191,11 @@ class Loader {
   const OpenCheckpoint& checkpoint_;
   ShareLimits limits_;
   const Grid<Dim>& grid_;
-  std::vector<std::int64_t> slab_counts_, totals_;
+  CellCounts counts_;
+  std::vector<std::int64_t> totals_;
   double outrun_ = 0.0;
-  int begin_ = 0, end_ = 0;
+  std::vector<CellBox<Dim>> boxes_;  ///< of this rank's lanes
+  int begin_ = 0, end_ = 0;          ///< slabs of this rank
 };
 
 void check_same_sources(const OpenCheckpoint& checkpoint, const Model& model) {
@@ -232,15 +235,15 @@ OpenCheckpoint open_checkpoint(const Communicator& communicator, const std::stri
 
 template <int Dim>
 LoadedShares load_shares(const Communicator& communicator, const OpenCheckpoint& checkpoint,
-                         const Model& model, const Grid<Dim>& grid, int num_lanes) {
+                         const Model& model, const Grid<Dim>& grid, const LaneMap& lanes) {
   Loader<Dim> loader(communicator, checkpoint, model, grid);
   loader.count();
-  return loader.load(num_lanes);
+  return loader.load(lanes);
 }
 
 template LoadedShares load_shares<2>(const Communicator&, const OpenCheckpoint&, const Model&,
-                                     const Grid<2>&, int);
+                                     const Grid<2>&, const LaneMap&);
 template LoadedShares load_shares<3>(const Communicator&, const OpenCheckpoint&, const Model&,
-                                     const Grid<3>&, int);
+                                     const Grid<3>&, const LaneMap&);
 
 }  // namespace barchan

@@ -9,6 +9,7 @@
 #include <barchan/core/checkpoint/state.hpp>
 #include <barchan/core/particles/share.hpp>
 #include <barchan/core/search/grid.hpp>
+#include <barchan/tasks/lane_map.hpp>
 
 namespace barchan {
 
@@ -42,7 +43,7 @@ struct OpenCheckpoint {
 
 /// What the lanes of a rank get of a checkpoint.
 struct LoadedShares {
-  std::vector<int> cuts;  ///< of all lanes
+  Cuts cuts;
   std::vector<CheckpointShare>
       shares;  ///< of this rank's lanes; contacts, bonds and walls of a cut in both neighbours
   std::vector<std::int64_t> totals;  ///< over the run
@@ -54,6 +55,6 @@ struct LoadedShares {
 template <int Dim>
 [[nodiscard]] LoadedShares load_shares(const Communicator& communicator,
                                        const OpenCheckpoint& checkpoint, const Model& model,
-                                       const Grid<Dim>& grid, int num_lanes);
+                                       const Grid<Dim>& grid, const LaneMap& lanes);
 
 }  // namespace barchan

@@ -35,6 +35,7 @@ class Simulation::Engine {
   virtual std::uint64_t digest() = 0;
   [[nodiscard]] virtual std::span<const WallState> walls() const = 0;
   [[nodiscard]] virtual Timings timings() const = 0;
+  [[nodiscard]] virtual CutsInUse cuts() const = 0;
   [[nodiscard]] virtual GraphShape graph_shape() const = 0;
   [[nodiscard]] virtual std::size_t memory_bytes() const = 0;
   [[nodiscard]] virtual std::int64_t num_owned() const = 0;
@@ -123,6 +124,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   std::uint64_t digest() override { return barchan::digest(parts_.strip); }
   [[nodiscard]] std::span<const WallState> walls() const override { return parts_.world.walls; }
   [[nodiscard]] Timings timings() const override;
+  [[nodiscard]] CutsInUse cuts() const override;
   [[nodiscard]] GraphShape graph_shape() const override { return graph_.shape(); }
   [[nodiscard]] std::size_t memory_bytes() const override { return parts_.strip.bytes(); }
   [[nodiscard]] std::int64_t num_owned() const override { return parts_.strip.num_owned(); }

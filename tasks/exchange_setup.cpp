@@ -30,9 +30,10 @@ ExchangeOptions options_of(const RunOptions& options) {
   return exchange;
 }
 
-std::unique_ptr<Exchange> recorded(std::unique_ptr<Exchange> exchange, const RunOptions& options) {
+std::unique_ptr<Exchange> recorded(std::unique_ptr<Exchange> exchange, int num_links,
+                                   const RunOptions& options) {
   if (!is_recording(options)) return exchange;
-  return std::make_unique<RecordingExchange>(std::move(exchange), options.tape);
+  return std::make_unique<RecordingExchange>(std::move(exchange), num_links, options.tape);
 }
 
 template <int Dim>
@@ -67,7 +68,8 @@ CutScheme cut_scheme(const RunOptions& options) {
 }
 
 std::unique_ptr<Exchange> first_exchange(const RunOptions& options,
-                                         const Communicator& communicator, Neighbours neighbours) {
+                                         const Communicator& communicator,
+                                         const Neighbours& neighbours) {
   check_exchange(options.exchange, communicator);
   const bool has_played_tape = options.tape != nullptr && options.tape->is_playing();
   if (has_played_tape != (options.exchange == kReplay)) {
@@ -82,7 +84,8 @@ std::unique_ptr<Exchange> first_exchange(const RunOptions& options,
   std::string name = options.exchange;
   if (name == kReturn) name = "sendrecv";
   if (name == kAuto) name = kBeforeAuto;
-  return recorded(make_exchange(name, communicator, neighbours, options_of(options)), options);
+  return recorded(make_exchange(name, communicator, neighbours, options_of(options)),
+                  neighbours.num_links(), options);
 }
 
 template <int Dim>
@@ -98,7 +101,7 @@ ExchangeChoice settle_exchange(Strip<Dim>& strip, const RunOptions& options,
   if (communicator.size() == 1 || options.exchange != kAuto) return choice;
   SelectedExchange selected = select_exchange(communicator, strip.neighbours(), options_of(options),
                                               strip.most_halo_bytes(), work_of(strip));
-  strip.set_exchange(recorded(std::move(selected.exchange), options));
+  strip.set_exchange(recorded(std::move(selected.exchange), strip.num_links(), options));
   return selected.choice;
 }
 

@@ -6,15 +6,15 @@ namespace barchan {
 namespace {
 
 Side side_of(Work work) {
-  return work == Work::LeftBand || work == Work::ArrivedLeft ? Side::Left : Side::Right;
+  return work == Work::LeftBand ? Side::Left : Side::Right;
 }
 
 bool is_band(Work work) {
   return work == Work::LeftBand || work == Work::RightBand;
 }
 
-std::string arrival_id(int rank, Side side) {
-  return fmt::format("r{}_arrived_{}", rank, name_of(side));
+std::string arrival_id(int rank, int link) {
+  return fmt::format("r{}_arrived{}", rank, link);
 }
 
 std::string id_of(const StepTask& task, int rank) {
@@ -33,8 +33,18 @@ std::string id_of(const StepTask& task, int rank) {
     case Work::RightBand:
       return fmt::format("r{}_{}{}", rank, name_of(side_of(task.work)), task.lane);
     default:
-      return arrival_id(rank, side_of(task.work));
+      return arrival_id(rank, task.lane);
   }
+}
+
+/// At the other end of a link.
+int rank_of(const GraphShape& shape, int link) {
+  for (const auto& lane : shape.lanes) {
+    for (const LaneTie& tie : lane.ties) {
+      if (tie.link == link) return tie.rank;
+    }
+  }
+  return -1;
 }
 
 std::string label_of(const StepTask& task, const GraphShape& shape) {
@@ -47,7 +57,7 @@ std::string label_of(const StepTask& task, const GraphShape& shape) {
     case Work::Await:
       return "await halos\\npolls until they are in";
     case Work::AwaitRight:
-      return "await the right halo\\npolls until it is in";
+      return "await the right halos\\npolls until they are in";
     case Work::Chunks: {
       const int n = shape.lanes[static_cast<std::size_t>(task.lane)].num_chunks;
       return fmt::format("lane {}: {} chunk{}\\none after the other, polls after each", task.lane,
@@ -58,7 +68,7 @@ std::string label_of(const StepTask& task, const GraphShape& shape) {
       return fmt::format("{} band of lane {}\\npairs, rows{}", name_of(side), task.lane,
                          shape.is_remote(task.lane, side) ? ", pack, send" : ", post");
     default:
-      return fmt::format("halo from rank {} is in", shape.neighbours.rank(side));
+      return fmt::format("halo from rank {} is in", rank_of(shape, task.lane));
   }
 }
 
@@ -75,15 +85,18 @@ std::string style_of(const StepArrow& arrow) {
   return arrow.is_next ? " [color=\"#888888\", constraint=false, label=\"next step\"]" : "";
 }
 
-/// What a band waits for is what the band beyond the cut sends in the step before.
+/// What a band waits for is what the lane beyond the cut sends in the step before.
 std::string messages(const GraphShape& shape, int rank) {
   std::string text;
-  for (const StepTask& task : step_tasks(shape).tasks) {
-    if (!is_band(task.work) || !shape.is_remote(task.lane, side_of(task.work))) continue;
-    const Side side = side_of(task.work);
-    text += fmt::format(
-        "  {} -> {} [style=dashed, color=\"#c05a00\", constraint=false, label=\"next step\"];\n",
-        id_of(task, rank), arrival_id(shape.neighbours.rank(side), opposite(side)));
+  for (int l = 0; l < shape.num_lanes(); ++l) {
+    for (const LaneTie& tie : shape.ties(l)) {
+      if (tie.link < 0) continue;
+      const bool is_left = shape.sending_band(tie) == Side::Left;
+      const StepTask sender{is_left ? Work::LeftBand : Work::RightBand, l};
+      text += fmt::format(
+          "  {} -> {} [style=dashed, color=\"#c05a00\", constraint=false, label=\"next step\"];\n",
+          id_of(sender, rank), arrival_id(tie.rank, tie.peer));
+    }
   }
   return text;
 }

@@ -8,8 +8,12 @@ namespace barchan {
 
 template <int Dim>
 HaloWatch<Dim>::HaloWatch(Strip<Dim>& strip, StepClock& clock, Progress progress,
-                          std::function<void(Side)> tell_arrival)
-    : strip_(strip), clock_(clock), tell_arrival_(std::move(tell_arrival)) {
+                          std::function<void(int)> tell_arrival)
+    : strip_(strip),
+      clock_(clock),
+      tell_arrival_(std::move(tell_arrival)),
+      is_in_(static_cast<std::size_t>(strip.num_links())) {
+  found_.reserve(is_in_.size());
   if (progress == Progress::Thread && strip_.exchange() != nullptr)
     driver_ = std::make_unique<ProgressThread>([this] { drive(); }, guard_);
 }
@@ -18,27 +22,44 @@ template <int Dim>
 void HaloWatch<Dim>::begin_run() {
   lanes_in_chunks_ = strip_.num_lanes();
   left_is_done_ = false;
-  for (const Side side : kSides) is_in_[index_of(side)] = !strip_.awaits(side);
+  int missing = 0;
+  for (int link = 0; link < strip_.num_links(); ++link) {
+    is_in_[static_cast<std::size_t>(link)] = !strip_.awaits(link);
+    missing += strip_.awaits(link) ? 1 : 0;
+  }
+  num_missing_ = missing;
+}
+
+/// In the published scheme the right neighbour answers what the left band has made known.
+template <int Dim>
+bool HaloWatch<Dim>::may_poll(int link) const {
+  return strip_.scheme() == CutScheme::BothSides || strip_.end_of(link).side == Side::Left ||
+         !strip_.has_left_link() || left_is_done_;
 }
 
 template <int Dim>
-bool HaloWatch<Dim>::may_poll(Side side) const {
-  return side == Side::Left || strip_.scheme() == CutScheme::BothSides ||
-         !strip_.neighbours().has(Side::Left) || left_is_done_;
-}
-
-template <int Dim>
-void HaloWatch<Dim>::poll_sides() {
-  for (const Side side : kSides) {
-    if (!is_in(side) && may_poll(side) && strip_.poll(side)) notice(side);
+void HaloWatch<Dim>::poll_links() {
+  found_.clear();
+  for (int link = 0; link < strip_.num_links(); ++link) {
+    if (!is_in(link) && may_poll(link) && strip_.poll(link)) notice(link);
   }
 }
 
 template <int Dim>
-void HaloWatch<Dim>::notice(Side side) {
-  clock_.noticed(side, strip_.posted_at(side), is_in(opposite(side)));
-  is_in_[index_of(side)] = true;
-  tell_arrival_(side);
+void HaloWatch<Dim>::notice(int link) {
+  found_.push_back(link);
+  is_in_[static_cast<std::size_t>(link)] = true;
+  --num_missing_;
+  clock_.noticed(link, strip_.end_of(link).lane, strip_.posted_at(link), all_are_in());
+  tell_arrival_(link);
+}
+
+template <int Dim>
+bool HaloWatch<Dim>::left_are_in() const {
+  for (int link = 0; link < strip_.num_links(); ++link) {
+    if (strip_.end_of(link).side == Side::Left && !is_in(link)) return false;
+  }
+  return true;
 }
 
 /// On the progress thread. What it finds stays found until a worker looks.
@@ -48,8 +69,8 @@ void HaloWatch<Dim>::drive() {
   Exchange& exchange = *strip_.exchange();
   if (exchange.is_blocking()) return;
   exchange.progress();
-  for (const Side side : kSides) {
-    if (!is_in(side) && may_poll(side)) (void)exchange.poll(side);
+  for (int link = 0; link < strip_.num_links(); ++link) {
+    if (!is_in(link) && may_poll(link)) (void)exchange.poll(link);
   }
 }
 
@@ -74,17 +95,17 @@ void HaloWatch<Dim>::try_poll(std::int64_t begin) {
   if (all_is_in && (driver_ || !strip_.exchange()->needs_progress())) return;
   const std::unique_lock<std::mutex> lock(guard_, std::try_to_lock);
   if (!lock.owns_lock()) return;
-  const std::array<bool, 2> before{is_in_[0], is_in_[1]};
+  found_.clear();
   if (all_is_in)
     strip_.exchange()->progress();
   else
-    poll_sides();
-  clock_.polled(begin, {is_in_[0] != before[0], is_in_[1] != before[1]});
+    poll_links();
+  clock_.polled(begin, found_);
 }
 
 template <int Dim>
 void HaloWatch<Dim>::await(bool left_only) {
-  const auto is_over = [this, left_only] { return left_only ? is_in(Side::Left) : all_are_in(); };
+  const auto is_over = [this, left_only] { return left_only ? left_are_in() : all_are_in(); };
   if (is_over()) return;
   const StepClock::Instant begin = clock_.instant();
   {
@@ -94,7 +115,7 @@ void HaloWatch<Dim>::await(bool left_only) {
   wait_until(
       [&] {
         const std::unique_lock<std::mutex> lock(guard_, std::try_to_lock);
-        if (lock.owns_lock()) poll_sides();
+        if (lock.owns_lock()) poll_links();
         return lock.owns_lock() && is_over();
       },
       [this] { return name_of_missing(); });
@@ -105,9 +126,11 @@ void HaloWatch<Dim>::await(bool left_only) {
 
 template <int Dim>
 std::string HaloWatch<Dim>::name_of_missing() const {
-  if (is_in(Side::Left) || is_in(Side::Right))
-    return strip_.name_of_halo(is_in(Side::Left) ? Side::Right : Side::Left);
-  return strip_.name_of_halo(Side::Left) + ", and " + strip_.name_of_halo(Side::Right);
+  std::string names;
+  for (int link = 0; link < strip_.num_links(); ++link) {
+    if (!is_in(link)) names += (names.empty() ? "" : ", and ") + strip_.name_of_halo(link);
+  }
+  return names;
 }
 
 template class HaloWatch<2>;

@@ -10,6 +10,7 @@
 
 #include <barchan/core/base/error.hpp>
 #include <barchan/tasks/agree.hpp>
+#include <barchan/tasks/cut_shape.hpp>
 #include <barchan/tasks/engine.hpp>
 #include <barchan/tasks/load_rows.hpp>
 
@@ -159,6 +160,14 @@ void Simulation::EngineOf<Dim>::set_gravity(const Vec3& gravity) {
 }
 
 template <int Dim>
+CutsInUse Simulation::EngineOf<Dim>::cuts() const {
+  const CutShape& shape = parts_.lanes.shape();
+  const CutRoom room = room_of(parts_.world.grid, 0);
+  return {shape.form == CutForm::Strips, along_xyz(shape.ranks, room),
+          along_xyz(shape.lanes, room)};
+}
+
+template <int Dim>
 void Simulation::EngineOf<Dim>::set_wall_velocity(std::size_t wall, const Vec3& velocity) {
   parts_.world.walls[wall].velocity = velocity;
   if (velocity.norm() <= schedule_.speed()) return;
@@ -182,6 +191,7 @@ template void Simulation::EngineOf<2>::for_each_view(
     const std::function<void(const ParticleView&)>&);
 template const ParticleIndex& Simulation::EngineOf<2>::index();
 template void Simulation::EngineOf<2>::set_loads(const Loads&);
+template CutsInUse Simulation::EngineOf<2>::cuts() const;
 template void Simulation::EngineOf<2>::set_gravity(const Vec3&);
 template void Simulation::EngineOf<2>::set_wall_velocity(std::size_t, const Vec3&);
 template void Simulation::EngineOf<2>::set_wall_load(std::size_t, double);
@@ -194,6 +204,7 @@ template void Simulation::EngineOf<3>::for_each_view(
     const std::function<void(const ParticleView&)>&);
 template const ParticleIndex& Simulation::EngineOf<3>::index();
 template void Simulation::EngineOf<3>::set_loads(const Loads&);
+template CutsInUse Simulation::EngineOf<3>::cuts() const;
 template void Simulation::EngineOf<3>::set_gravity(const Vec3&);
 template void Simulation::EngineOf<3>::set_wall_velocity(std::size_t, const Vec3&);
 template void Simulation::EngineOf<3>::set_wall_load(std::size_t, double);

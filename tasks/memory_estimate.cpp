@@ -22,16 +22,17 @@ std::vector<char> bonded_ones(const ParticleSet& set) {
   return is_bonded;
 }
 
-/// One lane takes all slabs, and has its lists made.
+/// One lane takes all cells, and has its lists made.
 template <int Dim>
 std::size_t bytes_of_lane(const Model& model, const ParticleSet& set) {
   World<Dim> world = make_world<Dim>(model, scale_of(model, set), vector_width("auto"));
   Lane<Dim> lane(world);
   const std::vector<double> lengths(set.bonds.size(), 0.0);  // take the same room
-  lane.rebuild.seed(0, world.grid.num_slabs(), set.particles, set.bonds, lengths, bonded_ones(set));
+  lane.rebuild.seed({box_of_slabs(world.grid, 0, world.grid.num_slabs()), {}}, set.particles,
+                    set.bonds, lengths, bonded_ones(set));
   lane.rebuild.order();
   lane.lists.list_owned();
-  lane.rebuild.take_ghosts({}, {});
+  lane.rebuild.take_ghosts({});
   lane.rebuild.restore_history();
   lane.lists.cut_chunks(kChunkPairs);
   return lane.bytes();

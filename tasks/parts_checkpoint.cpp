@@ -111,8 +111,8 @@ template <int Dim>
 std::int64_t restore_parts(RunParts<Dim>& run, const OpenCheckpoint& checkpoint) {
   for (std::size_t w = 0; w < run.world.walls.size(); ++w)
     run.world.walls[w] = restored(checkpoint.state.walls[w]);
-  const LoadedShares loaded = load_shares<Dim>(run.communicator, checkpoint, run.model,
-                                               run.world.grid, run.strip.num_lanes());
+  const LoadedShares loaded =
+      load_shares<Dim>(run.communicator, checkpoint, run.model, run.world.grid, run.lanes);
   double& quick_travel = run.world.quick_travel;
   for (const CheckpointShare& share : loaded.shares) {
     for (const double radius : share.radii) quick_travel = std::min(quick_travel, 0.5 * radius);

@@ -32,6 +32,7 @@ struct TestHooks : ExchangeHooks {  ///< tasks are delayed as messages are
 struct RunOptions {
   int threads = 0;                ///< per rank; 0 = cores of the node over ranks on it
   std::string exchange = "auto";  ///< see exchange_choices()
+  std::string cuts;  ///< auto, strips, or bricks such as 2,2,1; empty: as the deck says
   Schedule schedule = Schedule::Overlap;
   Progress progress = Progress::Poll;
   std::optional<ContactSearchKind> search;  ///< instead of the deck's

@@ -3,6 +3,7 @@
 #include <barchan/comm/base/communicator.hpp>
 #include <barchan/core/brick/world.hpp>
 #include <barchan/core/model/model.hpp>
+#include <barchan/tasks/lane_map.hpp>
 #include <barchan/tasks/run_options.hpp>
 #include <barchan/tasks/strip.hpp>
 #include <barchan/tasks/strip_rebuild.hpp>
@@ -14,7 +15,7 @@ namespace barchan {
 template <int Dim>
 struct RunParts {
   /// Without particles. The model and the communicator live longer. Collective. Errors: InputError:
-  /// too many ranks for the domain, unknown exchange or vector width
+  /// cuts that do not fit, unknown exchange or vector width
   RunParts(const Model& model, const Communicator& communicator, const RunOptions& options,
            const WorldScale& scale);
   RunParts(const RunParts&) = delete;
@@ -24,6 +25,7 @@ struct RunParts {
   const Communicator& communicator;
   WorldScale scale;
   World<Dim> world;
+  LaneMap lanes;
   Strip<Dim> strip;
   StripRebuild<Dim> rebuild;
 };

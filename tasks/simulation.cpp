@@ -206,6 +206,9 @@ Timings Simulation::timings() const {
 const ExchangeChoice& Simulation::exchange_choice() const {
   return engine().choice_;
 }
+CutsInUse Simulation::cuts() const {
+  return engine().cuts();
+}
 std::string Simulation::step_graph() const {
   return graph_dot(engine().communicator_, engine().graph_shape());
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -50,6 +51,12 @@ struct Timings {
   double exposed_seconds = 0.0;
   std::int64_t rebuilds = 0, migrations = 0;
   ExchangeStats exchange;  ///< zero on one rank
+};
+
+/// How ranks, and the lanes of each for its threads, share the domain: so many along x, y and z.
+struct CutsInUse {
+  bool are_strips = true;
+  std::array<int, 3> ranks{1, 1, 1}, lanes{1, 1, 1};
 };
 
 /// A wall of a simulation, which lives longer and is not moved.
@@ -233,6 +240,7 @@ class Simulation {
   [[nodiscard]] Timings timings() const;
   /// Which exchange is in use and why; the same on every rank.
   [[nodiscard]] const ExchangeChoice& exchange_choice() const;
+  [[nodiscard]] CutsInUse cuts() const;  ///< the same on every rank
   /// The step graph of all ranks as DOT, for Graphviz; complete on rank 0. Collective.
   [[nodiscard]] std::string step_graph() const;
   /// Writes tasks, messages and waits of all ranks as Chrome trace events. Collective.

@@ -7,6 +7,7 @@
 
 #include <barchan/core/brick/brick.hpp>
 #include <barchan/core/checkpoint/state.hpp>
+#include <barchan/tasks/lane_map.hpp>
 #include <barchan/tasks/particle_view.hpp>
 #include <barchan/tasks/rebuild_schedule.hpp>
 #include <barchan/tasks/state.hpp>
@@ -32,7 +33,7 @@ struct StateOf final : State::Data {
   [[nodiscard]] std::size_t bytes() const override;
 
   std::vector<Brick<Dim>> bricks;
-  std::vector<int> cuts;
+  Cuts cuts;
   std::vector<WallState> walls;
   std::vector<Vec3> walls_at_renewal;
   std::vector<double> loads;  ///< of walls

@@ -23,29 +23,27 @@ void StepClock::band(int lane, Side side, int step, std::int64_t begin, std::int
                 end, step);
 }
 
-void StepClock::sent(Side side, std::int64_t begin, std::int64_t end, std::int64_t in_exchange) {
+void StepClock::sent(int link, std::int64_t begin, std::int64_t end, std::int64_t in_exchange) {
   send_ += in_exchange;
   if (next_sent_at_ == 0) next_sent_at_ = end - in_exchange;
   if (trace_ == nullptr) return;
-  trace_->slice(Trace::Slice::Send, static_cast<int>(side), begin, end);
-  trace_->sent(side, trace_->step() + 1, end - in_exchange);
+  trace_->slice(Trace::Slice::Send, link, begin, end);
+  trace_->sent(link, trace_->step() + 1, end - in_exchange);
 }
 
-void StepClock::polled(std::int64_t begin, std::array<bool, 2> found) {
+void StepClock::polled(std::int64_t begin, std::span<const int> found) {
   const std::int64_t end = now_ns();
   poll_ += end - begin;
   if (trace_ == nullptr) return;
-  for (const Side side : kSides) {  // a slice for each, since polls in vain are many
-    if (found[index_of(side)])
-      trace_->slice(Trace::Slice::Poll, static_cast<int>(side), begin, end);
-  }
+  // A slice for each, since polls in vain are many.
+  for (const int link : found) trace_->slice(Trace::Slice::Poll, link, begin, end);
 }
 
 /// A lane whose chunks were done before others' has been idle since; the wait counts what comes
 /// after.
-void StepClock::noticed(Side side, std::int64_t posted, bool is_last) {
+void StepClock::noticed(int link, int lane, std::int64_t posted, bool is_last) {
   const std::int64_t now = now_ns();
-  const std::int64_t since = of(side == Side::Left ? 0 : num_lanes() - 1).idle_since;
+  const std::int64_t since = of(lane).idle_since;
   const std::int64_t until = waits_since_ != 0 ? waits_since_ : now;
   if (waits_since_ != 0) posted_ = std::max(posted_, posted);
   if (since != 0 && since < until) {
@@ -53,7 +51,7 @@ void StepClock::noticed(Side side, std::int64_t posted, bool is_last) {
     late_ += std::clamp<std::int64_t>(posted - since, 0, until - since);
   }
   if (is_last && sent_at_ != 0) flight_ += now - sent_at_;
-  if (trace_ != nullptr) trace_->noticed(side, trace_->step(), now);
+  if (trace_ != nullptr) trace_->noticed(link, trace_->step(), now);
 }
 
 StepClock::Instant StepClock::instant() const {

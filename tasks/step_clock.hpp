@@ -1,11 +1,11 @@
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <deque>
+#include <span>
 
-#include <barchan/comm/topology/neighbours.hpp>
+#include <barchan/core/base/side.hpp>
 #include <barchan/tasks/trace.hpp>
 
 namespace barchan {
@@ -43,11 +43,12 @@ class StepClock {
 
   // ---- by who holds the exchange
   /// @param in_exchange  of the time from begin to end [ns]; the rest is packing
-  void sent(Side side, std::int64_t begin, std::int64_t end, std::int64_t in_exchange);
-  /// @param found  the sides whose halo it found
-  void polled(std::int64_t begin, std::array<bool, 2> found);
+  void sent(int link, std::int64_t begin, std::int64_t end, std::int64_t in_exchange);
+  /// @param found  the links whose halo it found
+  void polled(std::int64_t begin, std::span<const int> found);
   /// @param posted  when the neighbour sent it; 0: not known. @param is_last  all halos are in now
-  void noticed(Side side, std::int64_t posted, bool is_last);
+  /// @param lane  that the link belongs to
+  void noticed(int link, int lane, std::int64_t posted, bool is_last);
   struct Instant {
     std::int64_t at, busy;  ///< busy: in bands so far
   };

@@ -15,13 +15,7 @@ namespace {
 
 template <int Dim>
 GraphShape shape_of(const Strip<Dim>& strip, Schedule schedule) {
-  GraphShape shape;
-  for (int l = 0; l < strip.num_lanes(); ++l) {
-    const Lane<Dim>& lane = strip.lane(l);
-    shape.lanes.push_back({lane.brick.num_chunks(), lane.brick.band(Side::Left).exists,
-                           lane.brick.band(Side::Right).exists});
-  }
-  shape.neighbours = strip.neighbours();
+  GraphShape shape = graph_shape(strip.form(), strip.ties());
   shape.is_sequential = schedule == Schedule::Sequential;
   shape.scheme = strip.scheme();
   return shape;
@@ -40,11 +34,12 @@ StepGraph<Dim>::StepGraph(Strip<Dim>& strip, const RunOptions& options)
              [this](const StepTask& task, int parity) { do_task(task, parity); }),
       awaits_right_(graph_.list().find({Work::AwaitRight}) >= 0),
       begin_(graph_.list().find({Work::Begin})),
-      arrived_{graph_.list().find({Work::ArrivedLeft}), graph_.list().find({Work::ArrivedRight})},
       watch_(strip, clock_, options.progress,
-             [this](Side side) { graph_.put(arrived_[index_of(side)], parity_); }) {
+             [this](int link) { graph_.put(arrived_[static_cast<std::size_t>(link)], parity_); }) {
   for (int l = 0; l < strip.num_lanes(); ++l)
     chunks_.push_back(graph_.list().find({Work::Chunks, l}));
+  for (int link = 0; link < strip.num_links(); ++link)
+    arrived_.push_back(graph_.list().find({Work::Arrived, link}));
 }
 
 template <int Dim>
@@ -76,9 +71,8 @@ void StepGraph<Dim>::run(const StepFrame& frame, int num_steps) {
 /// Ghosts that a rebuild has brought need no message.
 template <int Dim>
 void StepGraph<Dim>::begin() {
-  for (const Side side : kSides) {
-    const int arrived = arrived_[index_of(side)];
-    if (arrived >= 0 && watch_.is_in(side)) graph_.put(arrived, parity_);
+  for (int link = 0; link < strip_.num_links(); ++link) {
+    if (watch_.is_in(link)) graph_.put(arrived_[static_cast<std::size_t>(link)], parity_);
   }
   graph_.put(begin_, parity_);
 }
@@ -127,10 +121,14 @@ void StepGraph<Dim>::finish_band(int l, Side side) {
   const std::int64_t begin = now_ns();
   maybe_delay();
   {
+    // Pairs need no exchange, but for the answer to them.
     std::unique_lock<std::mutex> lock(watch_.guard(), std::defer_lock);
-    const bool is_remote = strip_.is_remote(l, side);
+    const bool is_remote = shape_.is_remote(l, side);
     if (is_remote) lock.lock();
+    strip_.take_halos(l, side);
+    if (is_remote && !shape_.returns()) lock.unlock();
     strip_.finish_band(l, side);
+    if (is_remote && !shape_.returns()) lock.lock();
     send(l, side);
     if (is_remote && side == Side::Left) watch_.left_band_is_done();
   }
@@ -140,10 +138,14 @@ void StepGraph<Dim>::finish_band(int l, Side side) {
 /// @pre the exchange is guarded for a band that another rank waits for
 template <int Dim>
 void StepGraph<Dim>::send(int l, Side side) {
-  if (!strip_.is_remote(l, side)) return strip_.send_band(l, side);
-  const std::int64_t in_exchange = strip_.send_ns(), begin = now_ns();
-  strip_.send_band(l, side);
-  clock_.sent(side, begin, now_ns(), strip_.send_ns() - in_exchange);
+  const std::vector<LaneTie>& ties = strip_.ties(l);
+  for (int tie = 0; tie < static_cast<int>(ties.size()); ++tie) {
+    const LaneTie& to = ties[static_cast<std::size_t>(tie)];
+    if (shape_.sending_band(to) != side) continue;
+    const std::int64_t in_exchange = strip_.send_ns(), begin = now_ns();
+    strip_.send_halo(l, tie);
+    if (to.link >= 0) clock_.sent(to.link, begin, now_ns(), strip_.send_ns() - in_exchange);
+  }
 }
 
 /// In the last task of the lane, which precedes its next one.

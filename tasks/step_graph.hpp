@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -62,7 +61,7 @@ class StepGraph {
   bool awaits_right_;  ///< in a task of its own
   int begin_;          ///< index of a task, as what follows
   std::vector<int> chunks_;
-  std::array<int, 2> arrived_;
+  std::vector<int> arrived_;  ///< by link
   HaloWatch<Dim> watch_;
 };
 

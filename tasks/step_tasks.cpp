@@ -24,8 +24,8 @@ StepTask chunks(int lane) {
 StepTask band(int lane, Side side) {
   return {side == Side::Left ? Work::LeftBand : Work::RightBand, lane};
 }
-StepTask arrived(Side side) {
-  return {side == Side::Left ? Work::ArrivedLeft : Work::ArrivedRight};
+StepTask arrived(int link) {
+  return {Work::Arrived, link};
 }
 
 class Writer {
@@ -37,8 +37,10 @@ class Writer {
     if (awaits_ && !is_lone_) write_await();
     for (int l = 0; l < shape_.num_lanes(); ++l) write_cuts(l);
     for (int l = 0; l < shape_.num_lanes(); ++l) write_lane(l);
-    for (const Side side : kSides) {
-      if (shape_.neighbours.has(side)) write_arrival(side);
+    for (int l = 0; l < shape_.num_lanes(); ++l) {
+      for (const LaneTie& tie : shape_.ties(l)) {
+        if (tie.link >= 0) write_arrival(l, tie);
+      }
     }
     return std::move(list_);
   }
@@ -61,11 +63,10 @@ class Writer {
 
   /// In memory, to the lanes beside.
   void write_cuts(int l) {
-    const int num_lanes = shape_.num_lanes();
-    for (const Side side : kSides) {
-      if (!shape_.has_band(l, side) || shape_.is_remote(l, side)) continue;
-      const int beside = (l + (side == Side::Left ? num_lanes - 1 : 1)) % num_lanes;
-      precedes_next(band(l, side), band(beside, opposite(side)));
+    for (const LaneTie& tie : shape_.ties(l)) {
+      if (tie.link >= 0) continue;
+      const LaneTie& back = shape_.ties(tie.lane)[static_cast<std::size_t>(tie.back)];
+      precedes_next(band(l, shape_.sending_band(tie)), band(tie.lane, back.side));
     }
   }
 
@@ -81,13 +82,14 @@ class Writer {
     precedes(await_right(), end());
   }
 
-  void write_arrival(Side side) {
-    precedes(arrived(side), band(shape_.outer_lane(side), side));
-    message(begin(), arrived(side), "after a rebuild");
+  void write_arrival(int lane, const LaneTie& tie) {
+    const StepTask in = arrived(tie.link);
+    precedes(in, band(lane, tie.side));
+    message(begin(), in, "after a rebuild");
     for (int l = 0; l < shape_.num_lanes() && !shape_.is_sequential; ++l)
-      message(chunks(l), arrived(side), "poll");
-    message(await(), arrived(side), "poll");
-    if (awaits_right_ && side == Side::Right) message(await_right(), arrived(side), "poll");
+      message(chunks(l), in, "poll");
+    message(await(), in, "poll");
+    if (awaits_right_ && tie.side == Side::Right) message(await_right(), in, "poll");
   }
 
   void precedes(const StepTask& from, const StepTask& to) { arrow(from, to, Way::Edge, false, ""); }
@@ -109,8 +111,8 @@ class Writer {
 
   const GraphShape& shape_;
   const bool is_lone_ = shape_.num_lanes() == 1;
-  const bool has_left_ = shape_.neighbours.has(Side::Left);
-  const bool has_right_ = shape_.neighbours.has(Side::Right);
+  const bool has_left_ = shape_.awaits(Side::Left);
+  const bool has_right_ = shape_.awaits(Side::Right);
   const bool awaits_ = has_left_ || has_right_;
   const bool awaits_right_ =
       has_left_ && has_right_ && (shape_.returns() || (is_lone_ && !shape_.is_sequential));
@@ -119,6 +121,39 @@ class Writer {
 };
 
 }  // namespace
+
+bool GraphShape::has_band(int lane, Side side) const {
+  return std::ranges::any_of(
+      ties(lane), [&](const LaneTie& tie) { return form == CutForm::Bricks || tie.side == side; });
+}
+
+bool GraphShape::is_remote(int lane, Side side) const {
+  return std::ranges::any_of(ties(lane), [&](const LaneTie& tie) {
+    return tie.link >= 0 && (tie.side == side || sending_band(tie) == side);
+  });
+}
+
+bool GraphShape::awaits(Side side) const {
+  return std::ranges::any_of(lanes, [&](const LaneShape& lane) {
+    return std::ranges::any_of(
+        lane.ties, [&](const LaneTie& tie) { return tie.link >= 0 && tie.side == side; });
+  });
+}
+
+int GraphShape::num_links() const {
+  int n = 0;
+  for (const LaneShape& lane : lanes) {
+    for (const LaneTie& tie : lane.ties) n += tie.link >= 0 ? 1 : 0;
+  }
+  return n;
+}
+
+GraphShape graph_shape(CutForm form, const std::vector<std::vector<LaneTie>>& ties) {
+  GraphShape shape;
+  shape.form = form;
+  for (const auto& of_lane : ties) shape.lanes.push_back({1, of_lane});
+  return shape;
+}
 
 int StepTasks::find(const StepTask& task) const {
   const auto at = std::find(tasks.begin(), tasks.end(), task);

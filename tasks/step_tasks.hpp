@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include <barchan/comm/topology/neighbours.hpp>
 #include <barchan/tasks/cut_scheme.hpp>
+#include <barchan/tasks/lane_map.hpp>
 
 namespace barchan {
 
@@ -15,34 +15,39 @@ enum class Work : std::uint8_t {
   Chunks,  ///< of a lane, one after the other; polls the exchange after each
   LeftBand,
   RightBand,
-  ArrivedLeft,
-  ArrivedRight,
-  Await,       ///< polls until the halos are in; where AwaitRight follows, until the left one is
-  AwaitRight,  ///< after the left band, until the right one is
+  Arrived,     ///< over a link
+  Await,       ///< polls until the halos are in; where AwaitRight follows, until the left ones are
+  AwaitRight,  ///< after the left band, until the right ones are
   End
 };
 
-/// One rank's lanes and neighbours, from which its tasks follow.
+/// One rank's lanes and what is beside them, from which its tasks follow.
 struct GraphShape {
   struct LaneShape {
     int num_chunks = 0;
-    bool has_left = false, has_right = false;  ///< bands
+    std::vector<LaneTie> ties;
   };
   std::vector<LaneShape> lanes;
-  Neighbours neighbours;
+  CutForm form = CutForm::Strips;
   bool is_sequential = false;
   CutScheme scheme = CutScheme::BothSides;
 
   [[nodiscard]] int num_lanes() const { return static_cast<int>(lanes.size()); }
-  [[nodiscard]] bool has_band(int lane, Side side) const {
-    const LaneShape& l = lanes[static_cast<std::size_t>(lane)];
-    return side == Side::Left ? l.has_left : l.has_right;
+  [[nodiscard]] const std::vector<LaneTie>& ties(int lane) const {
+    return lanes[static_cast<std::size_t>(lane)].ties;
   }
-  /// The lane at this end of the strip.
-  [[nodiscard]] int outer_lane(Side side) const { return side == Side::Left ? 0 : num_lanes() - 1; }
-  [[nodiscard]] bool is_remote(int lane, Side side) const {
-    return lane == outer_lane(side) && neighbours.has(side);
+  /// Of strips where there is a cut; other bricks have both bands, though all their ties be on one
+  /// side.
+  [[nodiscard]] bool has_band(int lane, Side side) const;
+  /// The band that is done last of what a tie leads to: then its halo goes.
+  [[nodiscard]] Side sending_band(const LaneTie& tie) const {
+    return form == CutForm::Strips ? tie.side : Side::Right;
   }
+  /// Whether a band waits for a message of another rank, or sends one.
+  [[nodiscard]] bool is_remote(int lane, Side side) const;
+  /// Whether any lane waits for another rank on this side.
+  [[nodiscard]] bool awaits(Side side) const;
+  [[nodiscard]] int num_links() const;
   /// Whether the right neighbour answers what the left band makes known.
   [[nodiscard]] bool returns() const { return scheme == CutScheme::Returned; }
   [[nodiscard]] Work last_work(int lane) const {
@@ -51,9 +56,12 @@ struct GraphShape {
   }
 };
 
+/// As a rank's lanes stand.
+[[nodiscard]] GraphShape graph_shape(CutForm form, const std::vector<std::vector<LaneTie>>& ties);
+
 struct StepTask {
   Work work = Work::Begin;
-  int lane = 0;  ///< of chunks and bands
+  int lane = 0;  ///< of chunks and bands; of Arrived the link
 
   friend bool operator==(const StepTask&, const StepTask&) = default;
 };
@@ -86,13 +94,14 @@ struct StepTasks {
 ///
 ///     begin ─► chunks(l) ─► left(l) ─► right(l) ─► end              for every lane l
 ///                 ┆            ▲          ▲
-///           polls ├┄┄► arrived(Left)      │                     of the lanes at the strip's ends
-///                 └┄┄► arrived(Right) ────┘
+///           polls ├┄┄► arrived(n)         │                     n: a link of the left band
+///                 └┄┄► arrived(m) ────────┘                     m: a link of the right one
 ///
 ///   chunks(l)     precedes left(l) precedes right(l): a lane is one task's at a time
 ///   last(l)       precedes chunks(l) of the next step, be it the same run's or a later one's
-///   arrived(side) precedes the band at that end of the strip: a message, since MPI knows no edges
-///   left(l)       precedes right(l-1) of the next step, and right(l) left(l+1): a cut in memory
+///   arrived(n)    precedes the band that link n belongs to: a message, since MPI knows no edges
+///   left(l)       of strips precedes right(l-1) of the next step, and right(l) left(l+1)
+///   right(l)      of bricks precedes the bands of all lanes beside in the next step: it sends
 ///   chunks(all)   precede await, which polls until all halos are in
 ///   left(0)       precedes await_right, where the right neighbour answers the left band
 ///

@@ -13,87 +13,115 @@
 #include <barchan/core/brick/halo.hpp>
 
 namespace barchan {
+
 template <int Dim>
 Strip<Dim>::Strip(World<Dim>& world, const Communicator& communicator,
-                  std::unique_ptr<Exchange> exchange, int num_lanes, CutScheme scheme)
+                  std::unique_ptr<Exchange> exchange, const LaneMap& map, CutScheme scheme)
     : world_(world),
       communicator_(communicator),
       exchange_(std::move(exchange)),
-      neighbours_(
-          strip_neighbours(communicator.rank(), communicator.size(), world.grid.is_periodic(0))),
+      map_(map),
+      ties_(map.ties(communicator.rank())),
+      neighbours_(neighbours_of(ties_)),
       scheme_(scheme),
-      posts_(static_cast<std::size_t>(num_lanes)) {
-  for (int l = 0; l < num_lanes; ++l) lanes_.emplace_back(world);
-  place_bands();
+      posts_(ties_.size()) {
+  for (std::size_t l = 0; l < ties_.size(); ++l) lanes_.emplace_back(world);
+  tie_lanes();
+  awaited_.resize(ends_.size());
+  shares_clock_.resize(ends_.size());
   if (!exchange_) return;
   const auto nodes = nodes_of_ranks(communicator);
   const std::int64_t mine = nodes[static_cast<std::size_t>(communicator.rank())];
-  for (const Side side : kSides) {
-    shares_clock_[index_of(side)] =
-        neighbours_.has(side) && nodes[static_cast<std::size_t>(neighbours_.rank(side))] == mine;
+  for (int link = 0; link < num_links(); ++link) {
+    shares_clock_[static_cast<std::size_t>(link)] =
+        nodes[static_cast<std::size_t>(neighbours_.rank(link))] == mine;
   }
 }
 
 template <int Dim>
-bool Strip<Dim>::has_neighbour(int l, Side side) const {
-  return !is_outer(l, side) || neighbours_.has(side) ||
-         (communicator_.size() == 1 && num_lanes() > 1 && world_.grid.is_periodic(0));
-}
-
-template <int Dim>
-auto Strip<Dim>::inbox(int l, Side side) const -> const Bytes& {
-  return post(lane_beside(l, side))
-      .halo[static_cast<std::size_t>(post(l).parity)][index_of(opposite(side))];
-}
-
-template <int Dim>
-void Strip<Dim>::place_bands() {
+void Strip<Dim>::tie_lanes() {
   for (int l = 0; l < num_lanes(); ++l) {
-    for (const Side side : kSides) {
-      Band& band = lane(l).brick.band(side);
-      band.exists = has_neighbour(l, side);
-      band.returns = returns() && is_remote(l, side);
+    Brick<Dim>& brick = lane(l).brick;
+    brick.form = form();
+    const int num_ties = static_cast<int>(ties(l).size());
+    for (auto& boxes : post(l).halo) boxes.resize(static_cast<std::size_t>(num_ties));
+    for (int t = 0; t < num_ties; ++t) {
+      const LaneTie& tie = ties(l)[static_cast<std::size_t>(t)];
+      brick.add_link(tie.side);
+      if (tie.link < 0) continue;
+      ends_.push_back({l, t, tie.side});
+      brick.band(tie.side).returns = returns();
     }
+    // Rows of a brick's rim are complete when both of its bands are done.
+    for (Band& band : brick.bands)
+      band.exists = band.exists || (form() == CutForm::Bricks && num_ties > 0);
   }
+}
+
+template <int Dim>
+bool Strip<Dim>::has_left_link() const {
+  return std::ranges::any_of(ends_, [](const LinkEnd& end) { return end.side == Side::Left; });
+}
+
+template <int Dim>
+auto Strip<Dim>::inbox(int l, int tie) const -> const Bytes& {
+  const LaneTie& from = ties(l)[static_cast<std::size_t>(tie)];
+  return post(from.lane)
+      .halo[static_cast<std::size_t>(post(l).parity)][static_cast<std::size_t>(from.back)];
+}
+
+template <int Dim>
+void Strip<Dim>::take_halos(int l, Side side) {
+  for (int t = 0; t < static_cast<int>(ties(l).size()); ++t) {
+    if (ties(l)[static_cast<std::size_t>(t)].side == side) take_halo(l, t);
+  }
+}
+
+template <int Dim>
+void Strip<Dim>::take_halo(int l, int tie) {
+  Brick<Dim>& brick = lane(l).brick;
+  const LaneTie& from = ties(l)[static_cast<std::size_t>(tie)];
+  if (from.link < 0) {
+    if (!post(l).is_fresh) unpack_halo(brick, tie, inbox(l, tie));
+    return;
+  }
+  if (!awaits(from.link)) return;
+  const auto message = exchange_->received(from.link);
+  if (returns() && from.side == Side::Right) {
+    results_.resize(message.size() / sizeof(double));
+    std::memcpy(results_.data(), message.data(), results_.size() * sizeof(double));
+  } else {
+    unpack_halo(brick, tie, message);
+  }
+  exchange_->release(from.link);
 }
 
 template <int Dim>
 void Strip<Dim>::finish_band(int l, Side side) {
   Lane<Dim>& mine = lane(l);
-  const Band& band = mine.brick.band(side);
-  if (!is_remote(l, side)) {
-    if (!post(l).is_fresh) unpack_halo(mine.brick, side, inbox(l, side));
-    return mine.step.finish_band(side);
-  }
-  if (band.returns && side == Side::Right) {
-    const auto message = exchange_->received(side);
-    results_.resize(message.size() / sizeof(double));
-    std::memcpy(results_.data(), message.data(), results_.size() * sizeof(double));
-    exchange_->release(side);
-    return mine.step.finish_right_band(results_);
-  }
-  if (awaits(side)) {
-    unpack_halo(mine.brick, side, exchange_->received(side));
-    exchange_->release(side);
-  }
+  const bool returns = mine.brick.band(side).returns;
+  if (returns && side == Side::Right) return mine.step.finish_right_band(results_);
   mine.step.finish_band(side);
-  if (!band.returns) return;
+  if (!returns) return;
   take_results(mine.brick, results_);
-  send_halo(side, results_.size() * sizeof(double), [&](std::span<std::byte> message) {
-    std::memcpy(message.data(), results_.data(), message.size());
-  });
+  for (const LaneTie& tie : ties(l)) {
+    if (tie.link < 0 || tie.side != side) continue;
+    send(tie.link, results_.size() * sizeof(double), [&](std::span<std::byte> message) {
+      std::memcpy(message.data(), results_.data(), message.size());
+    });
+  }
 }
 
 /// Packing is work, the rest is the exchange's.
 template <int Dim>
 template <class Pack>
-void Strip<Dim>::send_halo(Side side, std::size_t bytes, Pack&& pack) {
+void Strip<Dim>::send(int link, std::size_t bytes, Pack&& pack) {
   const std::int64_t begin = now_ns();
-  const auto message = exchange_->outgoing(side, bytes);
+  const auto message = exchange_->outgoing(link, bytes);
   const std::int64_t packing = now_ns();
   pack(message);
   const std::int64_t packed = now_ns();
-  exchange_->send(side);
+  exchange_->send(link);
   send_ns_ += (packing - begin) + (now_ns() - packed);
 }
 
@@ -106,16 +134,18 @@ void Strip<Dim>::set_exchange(std::unique_ptr<Exchange> exchange) {
 }
 
 template <int Dim>
-void Strip<Dim>::send_band(int l, Side side) {
-  Lane<Dim>& mine = lane(l);
-  if (is_remote(l, side)) {
-    if (returns() && side == Side::Left) return;  // ghosts go right only
-    return send_halo(side, halo_bytes(mine.brick, side),
-                     [&](std::span<std::byte> message) { pack_halo(mine.brick, side, message); });
+void Strip<Dim>::send_halo(int l, int tie) {
+  const Brick<Dim>& brick = lane(l).brick;
+  const LaneTie& to = ties(l)[static_cast<std::size_t>(tie)];
+  if (to.link >= 0) {
+    if (returns() && to.side == Side::Left) return;  // ghosts go right only
+    return send(to.link, halo_bytes(brick, tie),
+                [&](std::span<std::byte> message) { pack_halo(brick, tie, message); });
   }
-  auto& outbox = post(l).halo[static_cast<std::size_t>(1 - post(l).parity)][index_of(side)];
-  outbox.resize(halo_bytes(mine.brick, side));
-  pack_halo(mine.brick, side, outbox);
+  auto& outbox =
+      post(l).halo[static_cast<std::size_t>(1 - post(l).parity)][static_cast<std::size_t>(tie)];
+  outbox.resize(halo_bytes(brick, tie));
+  pack_halo(brick, tie, outbox);
 }
 
 template <int Dim>
@@ -127,36 +157,36 @@ void Strip<Dim>::end_step(int l) {
 template <int Dim>
 void Strip<Dim>::end_step() {
   halo_step_ = step + 1;
-  for (const Side side : kSides) awaited_[index_of(side)] = neighbours_.has(side);
+  awaited_.assign(awaited_.size(), true);
 }
 
 template <int Dim>
-void Strip<Dim>::wait_halo(Side side) {
-  wait_until([&] { return exchange_->poll(side); }, [&] { return name_of_halo(side); });
-  if (trace_ != nullptr) trace_->noticed(side, halo_step_, now_ns());
+void Strip<Dim>::wait_halo(int link) {
+  wait_until([&] { return exchange_->poll(link); }, [&] { return name_of_halo(link); });
+  if (trace_ != nullptr) trace_->noticed(link, halo_step_, now_ns());
 }
 
 template <int Dim>
-std::string Strip<Dim>::name_of_halo(Side side) const {
-  return fmt::format("rank {}: halo of step {} from rank {} ({})", communicator_.rank(), step,
-                     neighbours_.rank(side), name_of(side));
+std::string Strip<Dim>::name_of_halo(int link) const {
+  return fmt::format(
+      "rank {}: halo of step {} from rank {}{}", communicator_.rank(), step, neighbours_.rank(link),
+      form() == CutForm::Strips ? fmt::format(" ({})", name_of(end_of(link).side)) : std::string());
 }
 
 template <int Dim>
 void Strip<Dim>::complete_halo() {
   if (post(0).is_fresh) return;
   for (int l = 0; l < num_lanes(); ++l) {
-    for (const Side side : kSides) {
-      if (has_neighbour(l, side) && !is_remote(l, side))
-        unpack_halo(lane(l).brick, side, inbox(l, side));
+    for (int t = 0; t < static_cast<int>(ties(l).size()); ++t) {
+      if (ties(l)[static_cast<std::size_t>(t)].link < 0) unpack_halo(lane(l).brick, t, inbox(l, t));
     }
   }
-  for (const Side side : kSides) {
-    if (!awaits_ghosts(side)) continue;
-    wait_halo(side);
-    unpack_halo(outer_lane(side).brick, side, exchange_->received(side));
-    exchange_->release(side);
-    awaited_[index_of(side)] = false;
+  for (int link = 0; link < num_links(); ++link) {
+    if (!awaits_ghosts(link)) continue;
+    wait_halo(link);
+    unpack_halo(lane(end_of(link).lane).brick, end_of(link).tie, exchange_->received(link));
+    exchange_->release(link);
+    awaited_[static_cast<std::size_t>(link)] = false;
   }
   set_fresh();
 }
@@ -164,13 +194,13 @@ void Strip<Dim>::complete_halo() {
 template <int Dim>
 std::int64_t Strip<Dim>::discard_halo() {
   std::int64_t posted = 0;
-  for (const Side side : kSides) {
-    if (!awaits_ghosts(side)) continue;
-    wait_halo(side);
-    posted = std::max(posted, posted_at(side));
-    exchange_->release(side);
+  for (int link = 0; link < num_links(); ++link) {
+    if (!awaits_ghosts(link)) continue;
+    wait_halo(link);
+    posted = std::max(posted, posted_at(link));
+    exchange_->release(link);
   }
-  awaited_ = {};
+  await_none();
   return posted;
 }
 
@@ -178,17 +208,18 @@ std::int64_t Strip<Dim>::discard_halo() {
 template <int Dim>
 void Strip<Dim>::begin_lists() {
   for (int l = 0; l < num_lanes(); ++l) {
-    for (const Side side : kSides) {
-      for (auto& boxes : post(l).halo)
-        boxes[index_of(side)].reserve(halo_bytes(lane(l).brick, side));
+    for (auto& boxes : post(l).halo) {
+      for (std::size_t tie = 0; tie < boxes.size(); ++tie)
+        boxes[tie].reserve(halo_bytes(lane(l).brick, static_cast<int>(tie)));
     }
   }
   set_fresh();
-  awaited_ = {};
+  await_none();
   if (!returns()) return;
   results_.reserve(most_results_bytes() / sizeof(double));
   // In the published scheme results come back even where ghosts are fresh.
-  awaited_[index_of(Side::Right)] = neighbours_.has(Side::Right);
+  for (int link = 0; link < num_links(); ++link)
+    awaited_[static_cast<std::size_t>(link)] = end_of(link).side == Side::Right;
 }
 
 template <int Dim>
@@ -199,9 +230,9 @@ std::size_t Strip<Dim>::most_results_bytes() const {
 
 template <int Dim>
 std::size_t Strip<Dim>::most_halo_bytes() const {
-  return std::max({halo_bytes(lanes_.front().brick, Side::Left),
-                   halo_bytes(lanes_.back().brick, Side::Right),
-                   returns() ? most_results_bytes() : 0});
+  std::size_t most = returns() ? most_results_bytes() : 0;
+  for (const LinkEnd& end : ends_) most = std::max(most, halo_bytes(lane(end.lane).brick, end.tie));
+  return most;
 }
 
 template <int Dim>

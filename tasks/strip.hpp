@@ -13,65 +13,74 @@
 #include <barchan/comm/slots/exchange.hpp>
 #include <barchan/core/brick/lane.hpp>
 #include <barchan/tasks/cut_scheme.hpp>
+#include <barchan/tasks/lane_map.hpp>
 #include <barchan/tasks/trace.hpp>
 
 namespace barchan {
 
-/// The strip of one rank: its lanes, one per thread, and the halos that pass between lanes and
-/// between ranks in a step. What passes when lists are made anew is the business of StripRebuild.
+/// What one rank owns: its lanes, one per thread, and the halos that pass between lanes and between
+/// ranks in a step. What passes when lists are made anew is the business of StripRebuild.
 ///
 ///   ranks    |        0        |        1        |
-///   lanes    |   0    |   1    |   2    |   3    |
+///   lanes    |   0    |   1    |   2    |   3    |      and along other axes (LaneMap)
 ///
-/// Cuts lie on slab faces. With T threads a rank, every T-th of them is between ranks.
-/// A cut between two lanes of one rank works like one between ranks, with an outbox in memory for a
-/// message: a lane writes the outbox of step k + 1 when its band is finished in step k. Outboxes
-/// come in pairs, so that the neighbour may still read the one of step k.
+/// Cuts lie on faces of cells. A cut between two lanes of one rank works like one between ranks,
+/// with an outbox in memory for a message: a lane writes the outbox of step k + 1 when what is
+/// beside the cut is finished in step k. Outboxes come in pairs, so that the neighbour may still
+/// read the one of step k.
 template <int Dim>
 class Strip {
  public:
+  /// @param exchange  null on one rank. @param ties  of this rank (LaneMap)
   Strip(World<Dim>& world, const Communicator& communicator, std::unique_ptr<Exchange> exchange,
-        int num_lanes, CutScheme scheme);
+        const LaneMap& map, CutScheme scheme);
 
-  // ---- lanes and who is beside them; side is one of a lane's two
+  // ---- lanes and what is beside them
   [[nodiscard]] int num_lanes() const { return static_cast<int>(lanes_.size()); }
   std::deque<Lane<Dim>>& lanes() { return lanes_; }
   [[nodiscard]] const std::deque<Lane<Dim>>& lanes() const { return lanes_; }
   Lane<Dim>& lane(int l) { return lanes_[static_cast<std::size_t>(l)]; }
   [[nodiscard]] const Lane<Dim>& lane(int l) const { return lanes_[static_cast<std::size_t>(l)]; }
-  Lane<Dim>& outer_lane(Side side) { return side == Side::Left ? lanes_.front() : lanes_.back(); }
-  [[nodiscard]] bool is_outer(int l, Side side) const {
-    return side == Side::Left ? l == 0 : l + 1 == num_lanes();
+  [[nodiscard]] const LaneMap& map() const { return map_; }
+  [[nodiscard]] CutForm form() const { return map_.shape().form; }
+  [[nodiscard]] const std::vector<std::vector<LaneTie>>& ties() const { return ties_; }
+  [[nodiscard]] const std::vector<LaneTie>& ties(int l) const {
+    return ties_[static_cast<std::size_t>(l)];
   }
-  /// Whether what lies beyond this side of a lane is another rank's.
-  [[nodiscard]] bool is_remote(int l, Side side) const {
-    return is_outer(l, side) && neighbours_.has(side);
+  /// The lane at this end of a link, its tie, and the band that waits for it.
+  struct LinkEnd {
+    int lane = 0, tie = 0;
+    Side side = Side::Left;
+  };
+  [[nodiscard]] int num_links() const { return static_cast<int>(ends_.size()); }
+  [[nodiscard]] const LinkEnd& end_of(int link) const {
+    return ends_[static_cast<std::size_t>(link)];
   }
-  /// Whether there is a cut on this side of a lane.
-  [[nodiscard]] bool has_neighbour(int l, Side side) const;
-  /// The lane of this rank beside this one. Around the end of a periodic axis it may be itself.
-  [[nodiscard]] int lane_beside(int l, Side side) const {
-    return (l + (side == Side::Left ? num_lanes() - 1 : 1)) % num_lanes();
-  }
+  [[nodiscard]] bool has_left_link() const;
   [[nodiscard]] const Neighbours& neighbours() const { return neighbours_; }
   [[nodiscard]] CutScheme scheme() const { return scheme_; }
   [[nodiscard]] World<Dim>& world() const { return world_; }
   [[nodiscard]] const Communicator& communicator() const { return communicator_; }
 
   // ---- the step
-  /// Whether this band must wait for a message of another rank in this step.
-  [[nodiscard]] bool awaits(Side side) const { return awaited_[index_of(side)]; }
-  [[nodiscard]] bool poll(Side side) { return exchange_->poll(side); }
+  /// Whether a message of another rank is due in this step.
+  [[nodiscard]] bool awaits(int link) const { return awaited_[static_cast<std::size_t>(link)]; }
+  [[nodiscard]] bool poll(int link) { return exchange_->poll(link); }
   /// When the neighbour sent the message that is in [ns]; 0: not known, its clock is another one.
-  [[nodiscard]] std::int64_t posted_at(Side side) const {
-    return shares_clock(side) ? exchange_->halo_times(side).posted : 0;
+  [[nodiscard]] std::int64_t posted_at(int link) const {
+    return shares_clock(link) ? exchange_->halo_times(link).posted : 0;
   }
   /// With the neighbour, on whose node this rank is.
-  [[nodiscard]] bool shares_clock(Side side) const { return shares_clock_[index_of(side)]; }
-  /// Ghosts in, pairs, rows: everything that a band needs, once its message is there.
+  [[nodiscard]] bool shares_clock(int link) const {
+    return shares_clock_[static_cast<std::size_t>(link)];
+  }
+  /// The messages that a band waits for: ghosts, or in the published scheme forces.
+  /// @pre they are in
+  void take_halos(int l, Side side);
+  /// Pairs, rows: everything that a band needs. @pre take_halos
   void finish_band(int l, Side side);
-  /// Publishes the finished band for the next step. @pre finish_band
-  void send_band(int l, Side side);
+  /// For the next step. @pre the band that sends over this tie is finished
+  void send_halo(int l, int tie);
   /// After all bands of a lane. Lanes of a rank without neighbours may be in different steps.
   void end_step(int l);
   /// After all bands of all lanes: the next step's messages are expected.
@@ -79,8 +88,8 @@ class Strip {
   /// Waits for the messages of this step and unpacks them, without computing; for measurements
   /// between steps.
   void complete_halo();
-  /// What this rank waits for, as messages say it: "rank 0: halo of step 17 from rank 1 (right)".
-  [[nodiscard]] std::string name_of_halo(Side side) const;
+  /// What this rank waits for, as messages say it: "rank 0: halo of step 17 from rank 1".
+  [[nodiscard]] std::string name_of_halo(int link) const;
 
   // ---- lists made anew
   /// Waits for halos on their way and drops them. @return when the last was sent [ns]; 0: not known
@@ -97,16 +106,17 @@ class Strip {
   void set_trace(Trace* trace) { trace_ = trace; }
   [[nodiscard]] Trace* trace() const { return trace_; }
   [[nodiscard]] std::int64_t num_owned() const;
-  /// Where this rank's particles lie along the strip axis, least and most [m]; zeros without any.
+  /// Where this rank's particles lie along the grid's first axis, least and most [m]; zeros without
+  /// any.
   [[nodiscard]] std::pair<double, double> extent() const;
   [[nodiscard]] std::size_t bytes() const;
   std::int64_t step = 0;  ///< for messages
 
  private:
   using Bytes = std::vector<std::byte>;
-  struct Post {                                ///< messages of one lane
-    std::array<std::array<Bytes, 2>, 2> halo;  ///< by parity of the step that needs it, and side
-    int parity = 0;                            ///< of the step that the lane is in
+  struct Post {                              ///< messages of one lane
+    std::array<std::vector<Bytes>, 2> halo;  ///< by parity of the step that needs it, and tie
+    int parity = 0;                          ///< of the step that the lane is in
     bool is_fresh = true;  ///< ghosts are up to date: nothing to unpack in this step
   };
 
@@ -116,29 +126,34 @@ class Strip {
     for (Post& p : posts_) p.is_fresh = true;
   }
   [[nodiscard]] bool returns() const { return scheme_ == CutScheme::Returned; }
-  void place_bands();
-  void wait_halo(Side side);
+  void tie_lanes();
+  void wait_halo(int link);
   /// Of ghosts, which in the published scheme come from the left only.
-  [[nodiscard]] bool awaits_ghosts(Side side) const {
-    return awaits(side) && !(returns() && side == Side::Right);
+  [[nodiscard]] bool awaits_ghosts(int link) const {
+    return awaits(link) && !(returns() && end_of(link).side == Side::Right);
   }
+  void take_halo(int l, int tie);
+  void await_none() { awaited_.assign(awaited_.size(), false); }
   [[nodiscard]] std::size_t most_results_bytes() const;  ///< of forces in the published scheme
-  /// What the lane beside wrote of its band, for the step at hand. @pre has_neighbour, !is_remote
-  [[nodiscard]] const Bytes& inbox(int l, Side side) const;
+  /// What the lane beside wrote for the step at hand. @pre the tie leads to a lane of this rank
+  [[nodiscard]] const Bytes& inbox(int l, int tie) const;
   template <class Pack>
-  void send_halo(Side side, std::size_t bytes, Pack&& pack);
+  void send(int link, std::size_t bytes, Pack&& pack);
 
   World<Dim>& world_;
   const Communicator& communicator_;
   std::unique_ptr<Exchange> exchange_;
+  LaneMap map_;
+  std::vector<std::vector<LaneTie>> ties_;  ///< by lane
+  std::vector<LinkEnd> ends_;               ///< by link
   Neighbours neighbours_;
   CutScheme scheme_;
   std::deque<Lane<Dim>> lanes_;
   std::vector<Post> posts_;
-  std::vector<double> results_;  ///< of the published scheme, going or come
-  std::array<bool, 2> shares_clock_{};
-  std::array<bool, 2> awaited_{};  ///< a message of another rank is due in this step
-  std::int64_t halo_step_ = 0;     ///< that the halo on its way is for
+  std::vector<double> results_;     ///< of the published scheme, going or come
+  std::vector<bool> shares_clock_;  ///< by link
+  std::vector<bool> awaited_;       ///< by link: a message of another rank is due in this step
+  std::int64_t halo_step_ = 0;      ///< that the halo on its way is for
   std::int64_t send_ns_ = 0;
   Trace* trace_ = nullptr;
 };

@@ -8,9 +8,9 @@
 
 #include <barchan/comm/base/tape.hpp>
 #include <barchan/comm/base/watchdog.hpp>
-#include <barchan/comm/topology/strips.hpp>
 #include <barchan/core/base/clock.hpp>
 #include <barchan/core/brick/checkpoint.hpp>
+#include <barchan/tasks/cuts.hpp>
 #include <barchan/tasks/strip_plan.hpp>
 #include <barchan/tasks/strip_seed.hpp>
 
@@ -25,24 +25,31 @@ template <int Dim>
 StripRebuild<Dim>::StripRebuild(Strip<Dim>& strip)
     : strip_(strip),
       sizes_(strip.communicator(), 1, 0),
-      outboxes_(static_cast<std::size_t>(strip.num_lanes())) {}
+      outboxes_(static_cast<std::size_t>(strip.num_lanes())),
+      outgoing_(static_cast<std::size_t>(strip.num_links())) {
+  for (int l = 0; l < strip.num_lanes(); ++l) outboxes(l).resize(strip.ties(l).size());
+}
 
 template <int Dim>
 void StripRebuild<Dim>::seed(const ParticleSet& set) {
   const Grid<Dim>& grid = strip_.world().grid;
-  const std::vector<int> slabs = slabs_of(grid, set);
-  cuts_ = cut_equal(count_slabs(slabs, grid.num_slabs()), total_lanes(), kMinSlabs);
-  seed_lanes(strip_, set, slabs, std::span(cuts_).subspan(first_lane()));
+  const std::vector<CellAt<Dim>> cells = cells_of(grid, set);
+  CellCounts counts(room_of(grid, 0).cells);
+  for (const CellAt<Dim>& cell : cells) counts.add<Dim>(cell);
+  cuts_ = equal_cuts(counts, strip_.map().shape());
+  std::vector<Placement<Dim>> places;
+  for (int l = 0; l < strip_.num_lanes(); ++l) places.push_back(placement_of(l));
+  seed_lanes<Dim>(strip_, set, cells, places);
   begin_lists();
 }
 
 template <int Dim>
-void StripRebuild<Dim>::restore(std::vector<int> cuts, std::span<const CheckpointShare> shares) {
+void StripRebuild<Dim>::restore(Cuts cuts, std::span<const CheckpointShare> shares) {
   cuts_ = std::move(cuts);
-  for (std::size_t l = 0; l < shares.size(); ++l) {
-    const std::size_t place = first_lane() + l;
-    Lane<Dim>& lane = strip_.lanes()[l];
-    barchan::restore(lane.brick, lane.rebuild, cuts_[place], cuts_[place + 1], shares[l]);
+  for (int l = 0; l < strip_.num_lanes(); ++l) {
+    Lane<Dim>& lane = strip_.lane(l);
+    barchan::restore(lane.brick, lane.rebuild, placement_of(l),
+                     shares[static_cast<std::size_t>(l)]);
   }
   begin_lists();
 }
@@ -66,7 +73,7 @@ void StripRebuild<Dim>::rebuild(const ForEachLane& parallel) {
   const Exchange* exchange = strip_.exchange();
   if (exchange != nullptr && !exchange->allows_uneven_sides()) discard_halo();
   ++num_rebuilds_;
-  if (num_rebuilds_ % kRecutEvery == 0 && total_lanes() > 1) recut();
+  if (num_rebuilds_ % kRecutEvery == 0) recut();
   migrate(parallel);
   exchange_ghosts(parallel);
 }
@@ -89,41 +96,37 @@ void StripRebuild<Dim>::count_wait(double& seconds, Trace::Slice name, std::int6
 
 template <int Dim>
 void StripRebuild<Dim>::recut() {
+  const CutShape& shape = strip_.map().shape();
+  if (shape.num_ranks() * shape.num_lanes() == 1) return;
   const Grid<Dim>& grid = strip_.world().grid;
-  std::vector<std::int64_t> counts(static_cast<std::size_t>(grid.num_slabs()), 0);
+  CellCounts counts(room_of(grid, 0).cells);
   for (const Lane<Dim>& lane : strip_.lanes()) {
     for (std::int32_t i = 0; i < lane.brick.store.num_owned; ++i)
-      ++counts[static_cast<std::size_t>(grid.coordinate(lane.brick.store.x(i), 0))];
+      counts.add<Dim>(grid.cell(lane.brick.store.x(i)));
   }
   const std::int64_t begin = now_ns();
-  taped_sum(strip_.communicator(), counts);
+  taped_sum(strip_.communicator(), counts.all());
   count_wait(waits_.migration, Trace::Slice::Reduction, begin, 0);
-  cuts_ = barchan::recut(cuts_, counts, total_lanes(), kMinSlabs);
+  move_cuts(cuts_, counts, shape);
 }
 
 template <int Dim>
 void StripRebuild<Dim>::migrate(const ForEachLane& parallel) {
-  parallel([this](int l) {
-    const std::size_t place = first_lane() + static_cast<std::size_t>(l);
-    strip_.lane(l).rebuild.begin(cuts_[place], cuts_[place + 1], outbox(l, Side::Left),
-                                 outbox(l, Side::Right));
-  });
+  parallel([this](int l) { strip_.lane(l).rebuild.begin(placement_of(l), outboxes(l)); });
   begin_bulk();
   if (strip_.exchange() != nullptr) {
     for (const Lane<Dim>& lane : strip_.lanes()) num_migrations_ += lane.rebuild.num_leaving();
   }
   parallel([this](int l) {
-    for (const Side side : kSides) {
-      if (!strip_.is_remote(l, side)) strip_.lane(l).rebuild.absorb(bulk(l, side));
+    for (const LaneTie& tie : strip_.ties(l)) {
+      if (tie.link < 0) strip_.lane(l).rebuild.absorb(bulk(tie));
     }
   });
   if (strip_.exchange() != nullptr) {
     discard_halo();
     wait_bulk("migration", waits_.migration, Trace::Slice::Migration);
-    for (const Side side : kSides) {
-      if (strip_.neighbours().has(side))
-        strip_.outer_lane(side).rebuild.absorb(strip_.exchange()->bulk(side));
-    }
+    for (int link = 0; link < strip_.num_links(); ++link)
+      strip_.lane(strip_.end_of(link).lane).rebuild.absorb(strip_.exchange()->bulk(link));
   }
   parallel([this](int l) {
     strip_.lane(l).rebuild.take_in(newcomers_);
@@ -136,27 +139,25 @@ template <int Dim>
 void StripRebuild<Dim>::begin_bulk() {
   bulk_begin_ = now_ns();
   if (strip_.exchange() == nullptr) return;
-  const auto outgoing = [&](Side side) -> std::span<const std::byte> {
-    if (!strip_.neighbours().has(side)) return {};
-    return outbox(side == Side::Left ? 0 : strip_.num_lanes() - 1, side);
-  };
-  strip_.exchange()->begin_bulk(outgoing(Side::Left), outgoing(Side::Right));
+  for (int link = 0; link < strip_.num_links(); ++link) {
+    const auto& end = strip_.end_of(link);
+    outgoing_[static_cast<std::size_t>(link)] =
+        outboxes(end.lane)[static_cast<std::size_t>(end.tie)];
+  }
+  strip_.exchange()->begin_bulk(outgoing_);
 }
 
 template <int Dim>
-std::span<const std::byte> StripRebuild<Dim>::bulk(int l, Side side) {
-  if (!strip_.has_neighbour(l, side)) return {};
-  if (strip_.is_remote(l, side)) return strip_.exchange()->bulk(side);
-  return outbox(strip_.lane_beside(l, side), opposite(side));
+std::span<const std::byte> StripRebuild<Dim>::bulk(const LaneTie& tie) {
+  if (tie.link >= 0) return strip_.exchange()->bulk(tie.link);
+  return outboxes(tie.lane)[static_cast<std::size_t>(tie.back)];
 }
 
 template <int Dim>
 void StripRebuild<Dim>::exchange_ghosts(const ForEachLane& parallel) {
   parallel([this](int l) {
-    for (const Side side : kSides) {
-      outbox(l, side).clear();
-      if (strip_.has_neighbour(l, side)) strip_.lane(l).rebuild.pack_ghosts(side, outbox(l, side));
-    }
+    for (std::size_t tie = 0; tie < outboxes(l).size(); ++tie)
+      strip_.lane(l).rebuild.pack_ghosts(static_cast<int>(tie), outboxes(l)[tie]);
   });
   begin_bulk();
   parallel([this](int l) { strip_.lane(l).lists.list_owned(); });  // the messages travel meanwhile
@@ -166,7 +167,9 @@ void StripRebuild<Dim>::exchange_ghosts(const ForEachLane& parallel) {
   if (!is_alone) wait_bulk("ghosts", waits_.ghosts, Trace::Slice::Ghosts);
   parallel([this](int l) {
     Lane<Dim>& lane = strip_.lane(l);
-    lane.rebuild.take_ghosts(bulk(l, Side::Left), bulk(l, Side::Right));
+    std::vector<std::span<const std::byte>> messages;
+    for (const LaneTie& tie : strip_.ties(l)) messages.push_back(bulk(tie));
+    lane.rebuild.take_ghosts(messages);
     lane.rebuild.restore_history();
     lane.lists.cut_chunks(chunk_pairs);
   });
@@ -195,18 +198,16 @@ void StripRebuild<Dim>::wait_bulk(const char* what, double& seconds, Trace::Slic
       },
       [this, what] {
         std::string from;
-        for (const Side side : kSides) {
-          if (!strip_.neighbours().has(side)) continue;
-          from += fmt::format("{} rank {} ({})", from.empty() ? "from" : " or",
-                              strip_.neighbours().rank(side), name_of(side));
-        }
+        for (int link = 0; link < strip_.num_links(); ++link)
+          from += fmt::format("{} rank {}", from.empty() ? "from" : " or",
+                              strip_.neighbours().rank(link));
         return fmt::format("rank {}: {} of step {} {}", strip_.communicator().rank(), what,
                            strip_.step, from);
       });
   waits_.in_flight += seconds_since(bulk_begin_);
   std::int64_t posted = 0;
-  for (const Side side : kSides) {
-    if (strip_.shares_clock(side)) posted = std::max(posted, strip_.exchange()->bulk_posted(side));
+  for (int link = 0; link < strip_.num_links(); ++link) {
+    if (strip_.shares_clock(link)) posted = std::max(posted, strip_.exchange()->bulk_posted(link));
   }
   count_wait(seconds, name, begin, posted);
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -44,14 +43,14 @@ class StripRebuild {
   /// Instead of seed: the state of a checkpoint, between steps. Collective.
   /// @param shares  one for each lane of this rank: particles between its cuts, and all that has an
   /// end among them
-  void restore(std::vector<int> cuts, std::span<const CheckpointShare> shares);
+  void restore(Cuts cuts, std::span<const CheckpointShare> shares);
   /// The next rebuild takes them in; the same on every rank, and they live until then.
   void take_in(std::span<const ParticleData> newcomers) { newcomers_ = newcomers; }
   /// Collective; leaves ghosts up to date.
   void rebuild(const ForEachLane& parallel);
 
-  [[nodiscard]] const std::vector<int>& cuts() const { return cuts_; }  ///< of all lanes
-  void set_cuts(const std::vector<int>& cuts) { cuts_ = cuts; }  ///< with bricks that fit them
+  [[nodiscard]] const Cuts& cuts() const { return cuts_; }
+  void set_cuts(const Cuts& cuts) { cuts_ = cuts; }  ///< with bricks that fit them
   [[nodiscard]] const RebuildWaits& waits() const { return waits_; }
   void restart_waits() { waits_ = {}; }  ///< setting up is not part of the loop
   [[nodiscard]] std::int64_t num_rebuilds() const { return num_rebuilds_; }
@@ -68,27 +67,25 @@ class StripRebuild {
   void exchange_ghosts(const ForEachLane& parallel);
   /// Before there are threads.
   void begin_lists();
-  [[nodiscard]] Bytes& outbox(int l, Side side) {
-    return outboxes_[static_cast<std::size_t>(l)][index_of(side)];
+  [[nodiscard]] std::vector<Bytes>& outboxes(int l) {
+    return outboxes_[static_cast<std::size_t>(l)];
   }
-  /// Sends the outermost outboxes. bulk() gives what came, from a rank or a lane; empty: none came.
+  /// Sends the outboxes of links. bulk() gives what came, from a rank or a lane.
   void begin_bulk();
-  [[nodiscard]] std::span<const std::byte> bulk(int l, Side side);
+  [[nodiscard]] std::span<const std::byte> bulk(const LaneTie& tie);
+  [[nodiscard]] Placement<Dim> placement_of(int l) const {
+    return placement<Dim>(strip_.map(), cuts_, strip_.communicator().rank(), l, strip_.ties(l));
+  }
   void wait_bulk(const char* what, double& seconds, Trace::Slice name);
   void begin_sizes();
   /// Since `begin`, for what a neighbour sent at `posted`; 0: not known
   void count_wait(double& seconds, Trace::Slice name, std::int64_t begin, std::int64_t posted);
-  [[nodiscard]] std::size_t first_lane() const {
-    return static_cast<std::size_t>(strip_.communicator().rank() * strip_.num_lanes());
-  }
-  [[nodiscard]] int total_lanes() const {
-    return strip_.communicator().size() * strip_.num_lanes();
-  }
 
   Strip<Dim>& strip_;
-  Reduction sizes_;                             ///< of halos to come
-  std::vector<std::array<Bytes, 2>> outboxes_;  ///< by lane and side
-  std::vector<int> cuts_;                       ///< of all lanes
+  Reduction sizes_;                                   ///< of halos to come
+  std::vector<std::vector<Bytes>> outboxes_;          ///< by lane and tie
+  std::vector<std::span<const std::byte>> outgoing_;  ///< by link
+  Cuts cuts_;
   std::span<const ParticleData> newcomers_;
   RebuildWaits waits_;
   std::int64_t bulk_begin_ = 0;

@@ -38,22 +38,24 @@ BondGeometry bond_geometry(const PeriodicBox& box, const ParticleSet& set) {
 }  // namespace
 
 template <int Dim>
-void seed_lanes(Strip<Dim>& strip, const ParticleSet& set, std::span<const int> slabs,
-                std::span<const int> cuts) {
+void seed_lanes(Strip<Dim>& strip, const ParticleSet& set, std::span<const CellAt<Dim>> cells,
+                std::span<const Placement<Dim>> places) {
   const BondGeometry bonds = bond_geometry<Dim>(strip.world().grid.box(), set);
   for (std::size_t l = 0; l < strip.lanes().size(); ++l) {
     std::vector<ParticleData> mine;
     std::vector<char> is_bonded;
     for (std::size_t p = 0; p < set.particles.size(); ++p) {
-      if (slabs[p] < cuts[l] || slabs[p] >= cuts[l + 1]) continue;
+      if (!places[l].box.contains(cells[p])) continue;
       mine.push_back(set.particles[p]);
       is_bonded.push_back(bonds.is_bonded[p]);
     }
-    strip.lanes()[l].rebuild.seed(cuts[l], cuts[l + 1], mine, set.bonds, bonds.lengths, is_bonded);
+    strip.lanes()[l].rebuild.seed(places[l], mine, set.bonds, bonds.lengths, is_bonded);
   }
 }
 
-template void seed_lanes(Strip<2>&, const ParticleSet&, std::span<const int>, std::span<const int>);
-template void seed_lanes(Strip<3>&, const ParticleSet&, std::span<const int>, std::span<const int>);
+template void seed_lanes<2>(Strip<2>&, const ParticleSet&, std::span<const CellAt<2>>,
+                            std::span<const Placement<2>>);
+template void seed_lanes<3>(Strip<3>&, const ParticleSet&, std::span<const CellAt<3>>,
+                            std::span<const Placement<3>>);
 
 }  // namespace barchan

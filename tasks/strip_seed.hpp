@@ -9,10 +9,10 @@ namespace barchan {
 
 /// Gives the lanes of a strip their particles and bonds of the start. Every rank has all of them at
 /// hand and keeps its own.
-/// @param slabs  of every particle, see slabs_of
-/// @param cuts   of this rank's lanes: lane l has the slabs cuts[l] … cuts[l+1] - 1
+/// @param cells   of every particle, see cells_of
+/// @param places  of this rank's lanes
 template <int Dim>
-void seed_lanes(Strip<Dim>& strip, const ParticleSet& set, std::span<const int> slabs,
-                std::span<const int> cuts);
+void seed_lanes(Strip<Dim>& strip, const ParticleSet& set, std::span<const CellAt<Dim>> cells,
+                std::span<const Placement<Dim>> places);
 
 }  // namespace barchan

@@ -20,7 +20,7 @@ using Signal = tbb::flow::continue_msg;
 const char kBeginOfRun = 0;
 
 bool is_message(Work work) {
-  return work == Work::Begin || work == Work::ArrivedLeft || work == Work::ArrivedRight;
+  return work == Work::Begin || work == Work::Arrived;
 }
 
 /// A function for every lane. Nothing is read before the thread has taken it up.

@@ -24,13 +24,13 @@ constexpr std::array<const char*, static_cast<std::size_t>(Trace::Counter::kNum)
 
 /// What the number in a slice says, by its name.
 const char* detail_name(Trace::Slice slice) {
-  if (slice == Trace::Slice::Send || slice == Trace::Slice::Poll) return "side";
+  if (slice == Trace::Slice::Send || slice == Trace::Slice::Poll) return "link";
   return "lane";
 }
 
 }  // namespace
 
-Trace::Trace(const Communicator& communicator, Neighbours neighbours, int num_workers,
+Trace::Trace(const Communicator& communicator, const Neighbours& neighbours, int num_workers,
              std::size_t num_events)
     : communicator_(communicator),
       neighbours_(neighbours),
@@ -118,7 +118,6 @@ void Trace::append_names(std::string& text) const {
 void Trace::append(std::string& text, const Event& event, int worker, double ts, double end) const {
   const int rank = communicator_.rank();
   const auto out = std::back_inserter(text);
-  const auto side = static_cast<Side>(event.detail);
   if (event.kind == Kind::Slice) {
     fmt::format_to(out,
                    ",\n"
@@ -132,16 +131,16 @@ void Trace::append(std::string& text, const Event& event, int worker, double ts,
                    R"({{"ph":"C","name":"{}","pid":{},"ts":{:.3f},"args":{{"us":{:.3f}}}}})",
                    kCounterNames[event.name], rank, ts, 1e-3 * static_cast<double>(event.end));
   } else {
-    // A flow is known by its sender, the side it leaves on, and the step that needs it.
+    // A flow is known by its sender, the link that it leaves by, and the step that needs it.
     const bool is_sent = event.kind == Kind::Sent;
-    const int sender = is_sent ? rank : neighbours_.rank(side);
-    const Side from = is_sent ? side : opposite(side);
+    const int sender = is_sent ? rank : neighbours_.rank(event.detail);
+    const int from = is_sent ? event.detail : neighbours_.peer(event.detail);
     fmt::format_to(out,
                    ",\n"
-                   R"({{"ph":"{}","name":"halo","cat":"halo","id":"{}{}{}",{})"
+                   R"({{"ph":"{}","name":"halo","cat":"halo","id":"{}.{}.{}",{})"
                    R"("pid":{},"tid":{},"ts":{:.3f}}})",
-                   is_sent ? "s" : "f", sender, from == Side::Left ? "L" : "R", event.step,
-                   is_sent ? "" : R"("bp":"e",)", rank, worker, ts);
+                   is_sent ? "s" : "f", sender, from, event.step, is_sent ? "" : R"("bp":"e",)",
+                   rank, worker, ts);
   }
 }
 

@@ -35,7 +35,7 @@ class Trace {
   enum class Counter : std::uint8_t { ExposedMicroseconds, FlightMicroseconds, kNum };
 
   /// @param num_workers  threads of the rank; @param num_events  that each of them keeps
-  Trace(const Communicator& communicator, Neighbours neighbours, int num_workers,
+  Trace(const Communicator& communicator, const Neighbours& neighbours, int num_workers,
         std::size_t num_events);
 
   // By any worker, in a step.
@@ -45,11 +45,11 @@ class Trace {
     put({begin, end, step_ + ahead, detail, Kind::Slice, static_cast<std::uint8_t>(name)});
   }
   /// A halo message that the receiver needs in `step`; at an instant inside a slice of this worker.
-  void sent(Side side, std::int64_t step, std::int64_t at) {
-    put({at, at, step, static_cast<std::int32_t>(side), Kind::Sent, 0});
+  void sent(int link, std::int64_t step, std::int64_t at) {
+    put({at, at, step, link, Kind::Sent, 0});
   }
-  void noticed(Side side, std::int64_t step, std::int64_t at) {
-    put({at, at, step, static_cast<std::int32_t>(side), Kind::Noticed, 0});
+  void noticed(int link, std::int64_t step, std::int64_t at) {
+    put({at, at, step, link, Kind::Noticed, 0});
   }
   void count(Counter name, std::int64_t value, std::int64_t at) {
     put({at, value, step_, 0, Kind::Counter, static_cast<std::uint8_t>(name)});

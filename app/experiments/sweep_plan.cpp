@@ -129,9 +129,10 @@ void SweepPlan::check_decks() const {
     if (arguments_.steps) loaded.deck.model.time.num_steps = *arguments_.steps;
     check_time_step(loaded.deck.model, step_limits(loaded.deck.model, loaded.particles));
     check_precision(loaded.deck.model, loaded.particles);
-    const StripPlan strips = plan_strips(loaded.deck.model, loaded.particles);
+    const CutPlan plan = plan_cuts(loaded.deck.model, loaded.particles);
+    const Domain& domain = loaded.deck.model.domain;
     for (const int p : of_ranks)
-      check_ranks(p, loaded.deck.model, static_cast<int>(strips.slab_counts.size()));
+      (void)choose_cuts({domain.cuts, p, 1, false, domain.place}, plan.room);
   }
 }
 

@@ -92,6 +92,8 @@ Json type_of(const deck::KeySpec& spec) {
     case T::Pairs:
       return array_of(
           {{"type", "array"}, {"items", {{"type", "integer"}}}, {"minItems", 2}, {"maxItems", 2}});
+    case T::Cuts:
+      return {{"anyOf", {Json{{"enum", {"auto", "strips"}}}, array_of({{"type", "integer"}})}}};
     case T::Table:
     case T::Tables:
       return tables_of(spec);

@@ -143,9 +143,9 @@ void steps(benchmark::State& state, VectorWidth width) {
 template <int Dim>
 void pack_halo(benchmark::State& state) {
   const auto sample = make_sample<Dim>(state.range(0), VectorWidth::Scalar, true);
-  std::vector<std::byte> message(halo_bytes(sample->lane->brick, Side::Right));
+  std::vector<std::byte> message(halo_bytes(sample->lane->brick, 0));
   for (auto _ : state) {
-    pack_halo(sample->lane->brick, Side::Right, message);
+    pack_halo(sample->lane->brick, 0, message);
     benchmark::ClobberMemory();
   }
   const double record = double{halo_record_bytes<Dim>()}, bytes = record_bytes(Dim) + record;
@@ -155,10 +155,10 @@ void pack_halo(benchmark::State& state) {
 template <int Dim>
 void unpack_halo(benchmark::State& state) {
   const auto sample = make_sample<Dim>(state.range(0), VectorWidth::Scalar, true);
-  std::vector<std::byte> message(halo_bytes(sample->right->brick, Side::Left));
-  pack_halo(sample->right->brick, Side::Left, message);
+  std::vector<std::byte> message(halo_bytes(sample->right->brick, 0));
+  pack_halo(sample->right->brick, 0, message);
   for (auto _ : state) {
-    unpack_halo(sample->lane->brick, Side::Right, message);
+    unpack_halo(sample->lane->brick, 0, message);
     benchmark::ClobberMemory();
   }
   const double record = double{halo_record_bytes<Dim>()}, bytes = 2.0 * record_bytes(Dim) + record;

@@ -29,13 +29,12 @@ Seconds rebuild(Lane<Dim>& lane) {
     seconds[Whole] += seconds[part];
     last = now;
   };
-  std::vector<std::byte> to_left, to_right;
-  lane.rebuild.begin(lane.brick.slab_begin, lane.brick.slab_end, to_left, to_right);
+  lane.rebuild.begin({lane.brick.box, {}}, {});
   lap(Leave);
   lane.rebuild.order();
   lap(Order);
   lane.lists.list_owned();
-  lane.rebuild.take_ghosts({}, {});
+  lane.rebuild.take_ghosts({});
   lap(Candidates);
   lane.rebuild.restore_history();
   lap(History);

@@ -1,8 +1,10 @@
 #include "sample.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <span>
 #include <vector>
 
 #include <fmt/format.h>
@@ -93,18 +95,20 @@ template <int Dim>
 void settle(Sample<Dim>& sample) {
   Lane<Dim>&left = *sample.lane, *right = sample.right.get();
   std::vector<std::byte> to_right, to_left;
+  std::vector<std::span<const std::byte>> of_left;
   left.rebuild.order();
   if (right != nullptr) {
     right->rebuild.order();
-    left.rebuild.pack_ghosts(Side::Right, to_right);
-    right->rebuild.pack_ghosts(Side::Left, to_left);
+    left.rebuild.pack_ghosts(0, to_right);
+    right->rebuild.pack_ghosts(0, to_left);
+    of_left.emplace_back(to_left);
     right->lists.list_owned();
-    right->rebuild.take_ghosts(to_right, {});
+    right->rebuild.take_ghosts(std::array{std::span<const std::byte>(to_right)});
     right->rebuild.restore_history();
     right->lists.cut_chunks(1 << 14);
   }
   left.lists.list_owned();
-  left.rebuild.take_ghosts({}, to_left);
+  left.rebuild.take_ghosts(of_left);
   left.rebuild.restore_history();
   left.lists.cut_chunks(std::int64_t{1} << 60);
 }
@@ -131,11 +135,14 @@ std::unique_ptr<Sample<Dim>> make_sample(std::int64_t count, VectorWidth width, 
     parts[world.grid.coordinate(p.position.data(), 0) < cut ? 0 : 1].push_back(p);
   const auto seed = [&](int side, int begin, int end) {
     auto lane = std::make_unique<Lane<Dim>>(world);
+    Placement<Dim> at{box_of_slabs(world.grid, begin, end), {}};
     if (has_cut) {
-      lane->brick.band(side == 0 ? Side::Right : Side::Left).exists = true;
+      lane->brick.add_link(side == 0 ? Side::Right : Side::Left);
+      at.beyond.push_back(side == 0 ? box_of_slabs(world.grid, cut, slabs)
+                                    : box_of_slabs(world.grid, 0, cut));
     }
     const std::vector<char> bonded(parts[side].size(), 0);
-    lane->rebuild.seed(begin, end, parts[side], {}, {}, bonded);
+    lane->rebuild.seed(at, parts[side], {}, {}, bonded);
     return lane;
   };
   sample->lane = seed(0, 0, cut);

@@ -16,6 +16,7 @@ void Tape::rewind() {
   is_playing_ = true;
   num_channels_ = kNumFixed;
   for (Track& track : tracks_) track.num_played = 0;
+  for (Track& track : messages_) track.num_played = 0;
 }
 
 int Tape::open_channel() {
@@ -27,7 +28,16 @@ int Tape::open_channel() {
 }
 
 Tape::Track& Tape::track(int channel) {
-  return tracks_[static_cast<std::size_t>(channel)];
+  if (channel >= 0) return tracks_[static_cast<std::size_t>(channel)];
+  const auto at = static_cast<std::size_t>(-1 - channel);
+  if (at >= messages_.size()) messages_.resize(at + 1);
+  return messages_[at];
+}
+
+const Tape::Track* Tape::find(int channel) const {
+  const auto& tracks = channel >= 0 ? tracks_ : messages_;
+  const auto at = static_cast<std::size_t>(channel >= 0 ? channel : -1 - channel);
+  return at < tracks.size() ? &tracks[at] : nullptr;
 }
 
 void Tape::record(int channel, std::span<const std::byte> bytes) {
@@ -43,8 +53,8 @@ void Tape::record(int channel, std::span<const std::byte> bytes) {
 }
 
 bool Tape::has_next(int channel) const {
-  const Track& mine = tracks_[static_cast<std::size_t>(channel)];
-  return mine.num_played < mine.records.size();
+  const Track* mine = find(channel);
+  return mine != nullptr && mine->num_played < mine->records.size();
 }
 
 std::span<const std::byte> Tape::next(int channel) {
@@ -57,8 +67,10 @@ std::span<const std::byte> Tape::next(int channel) {
 
 std::size_t Tape::bytes() const {
   std::size_t sum = 0;
-  for (const Track& track : tracks_) {
-    for (const auto& block : track.blocks) sum += block.size();
+  for (const auto* tracks : {&tracks_, &messages_}) {
+    for (const Track& track : *tracks) {
+      for (const auto& block : track.blocks) sum += block.size();
+    }
   }
   return sum;
 }

@@ -16,12 +16,15 @@ namespace barchan {
 ///     auto tape = std::make_shared<Tape>();      run once: messages and reductions are recorded
 ///     tape->rewind();                            run again: they come from the tape, at once
 ///
-/// The time of the second run is that of the first without its communication. Channels of messages
-/// are fixed; reductions open theirs in the order in which they are made, the same in both runs.
+/// The time of the second run is that of the first without its communication. Messages have a
+/// channel for each link; reductions open theirs in the order in which they are made in both runs.
 /// One thread at a time. Local.
 class Tape {
  public:
-  enum Channel { HaloLeft, HaloRight, BulkLeft, BulkRight, Sums, Verdicts, kNumFixed };
+  enum Channel { Sums, Verdicts, kNumFixed };
+  /// Of messages over a link.
+  [[nodiscard]] static int halo_channel(int link) { return -1 - 2 * link; }
+  [[nodiscard]] static int bulk_channel(int link) { return -2 - 2 * link; }
 
   [[nodiscard]] bool is_playing() const { return is_playing_; }
   /// From now on the tape plays, from its beginning.
@@ -43,8 +46,10 @@ class Tape {
     std::size_t num_played = 0;
   };
   Track& track(int channel);
+  [[nodiscard]] const Track* find(int channel) const;
 
   std::vector<Track> tracks_ = std::vector<Track>(kNumFixed);
+  std::vector<Track> messages_;  ///< by channel, from −1 down
   int num_channels_ = kNumFixed;
   bool is_playing_ = false;
 };

@@ -9,16 +9,20 @@
 namespace barchan {
 
 std::unique_ptr<SlotExchange> make_put_flag(const Communicator& communicator,
-                                            Neighbours neighbours);
+                                            const Neighbours& neighbours);
 std::unique_ptr<SlotExchange> make_put_inband(const Communicator& communicator,
-                                              Neighbours neighbours);
-std::unique_ptr<SlotExchange> make_get(const Communicator& communicator, Neighbours neighbours);
+                                              const Neighbours& neighbours);
+std::unique_ptr<SlotExchange> make_get(const Communicator& communicator,
+                                       const Neighbours& neighbours);
 std::unique_ptr<SlotExchange> make_shared_memory(const Communicator& communicator,
-                                                 Neighbours neighbours);
-std::unique_ptr<SlotExchange> make_pscw(const Communicator& communicator, Neighbours neighbours);
-std::unique_ptr<SlotExchange> make_fence(const Communicator& communicator, Neighbours neighbours);
-std::unique_ptr<SlotExchange> make_isend(const Communicator& communicator, Neighbours neighbours);
+                                                 const Neighbours& neighbours);
+std::unique_ptr<SlotExchange> make_pscw(const Communicator& communicator,
+                                        const Neighbours& neighbours);
+std::unique_ptr<SlotExchange> make_fence(const Communicator& communicator,
+                                         const Neighbours& neighbours);
+std::unique_ptr<SlotExchange> make_isend(const Communicator& communicator,
+                                         const Neighbours& neighbours);
 std::unique_ptr<SlotExchange> make_sendrecv(const Communicator& communicator,
-                                            Neighbours neighbours);
+                                            const Neighbours& neighbours);
 
 }  // namespace barchan

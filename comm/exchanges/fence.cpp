@@ -13,12 +13,12 @@ namespace {
 
 /// Fence, put, fence: one window per channel, and the n-th fence of all ranks closes message n of
 /// all.
-/// The fence is called by the first poll after both sides have been sent; it waits for every rank,
-/// so this exchange hides little, both sides go in step (no `return` scheme), every rank has a
+/// The fence is called by the first poll after all links have been sent; it waits for every rank,
+/// so this exchange hides little, all links go in step (no `return` scheme), every rank has a
 /// neighbour, and halo and bulk are not in flight at the same time.
 class Fence final : public SlotExchange {
  public:
-  Fence(const Communicator& communicator, Neighbours neighbours)
+  Fence(const Communicator& communicator, const Neighbours& neighbours)
       : SlotExchange(communicator, neighbours), num_exceptions_(std::uncaught_exceptions()) {}
 
   ~Fence() override {
@@ -35,16 +35,17 @@ class Fence final : public SlotExchange {
 
  protected:
   void allocate(SlotCapacity capacity) override {
-    layout_ = SlotLayout{capacity};
+    layout_ = SlotLayout{capacity, most_links()};
+    outboxes_.resize(num_positions());
+    num_posted_.assign(num_positions(), 0);
     num_fences_ = {};
-    num_posted_ = {};
     for (Window& window : windows_) {
       window = Window(communicator(), layout_.total());
       close(window, MPI_MODE_NOPRECEDE);
     }
     for (const Channel channel : {Channel::Halo, Channel::Bulk}) {
-      for (const Side side : {Side::Left, Side::Right}) {
-        outboxes_[index({channel, side, 0})].resize(slot_bytes(capacity.of(channel)));
+      for (int link = 0; link < neighbours().num_links(); ++link) {
+        outboxes_[index({channel, link, 0})].resize(slot_bytes(capacity.of(channel)));
       }
     }
   }
@@ -61,15 +62,15 @@ class Fence final : public SlotExchange {
 
   void post(const MessageKey& key, const MessageHeader& header) override {
     write_header(header, outbox(key));
-    window(key).put({outbox(key), kHeaderBytes + header.bytes}, neighbours().rank(key.side),
-                    layout_.slot(SlotLayout::at_receiver(key)));
+    window(key).put({outbox(key), kHeaderBytes + header.bytes}, neighbours().rank(key.link),
+                    layout_.slot(at_receiver(key)));
     num_posted_[index(key)] = key.number;
   }
 
   const std::byte* arrived(const MessageKey& key) override {
     std::uint64_t& num_fences = num_fences_[static_cast<std::size_t>(key.channel)];
     if (num_fences < key.number) {
-      if (!has_sent_both(key)) return nullptr;
+      if (!has_sent_all(key)) return nullptr;
       close(window(key), 0);
       ++num_fences;
     }
@@ -88,10 +89,12 @@ class Fence final : public SlotExchange {
   static void close(const Window& window, int assertion) {
     check_watched("MPI_Win_fence", [&] { return MPI_Win_fence(assertion, window.handle()); });
   }
-  [[nodiscard]] bool has_sent_both(const MessageKey& key) const {
-    return std::ranges::all_of(std::array{Side::Left, Side::Right}, [&](Side side) {
-      return !neighbours().has(side) || num_posted_[index({key.channel, side, 0})] >= key.number;
-    });
+  [[nodiscard]] bool has_sent_all(const MessageKey& key) const {
+    for (int link = 0; link < neighbours().num_links(); ++link) {
+      if (neighbours().has(link) && num_posted_[index({key.channel, link, 0})] < key.number)
+        return false;
+    }
+    return true;
   }
   [[nodiscard]] const Window& window(const MessageKey& key) const {
     return windows_[static_cast<std::size_t>(key.channel)];
@@ -99,15 +102,16 @@ class Fence final : public SlotExchange {
 
   std::array<Window, kNumChannels> windows_;
   SlotLayout layout_;
-  std::array<std::vector<std::byte>, kNumChannelSides> outboxes_;
+  std::vector<std::vector<std::byte>> outboxes_;
   std::array<std::uint64_t, kNumChannels> num_fences_{};
-  std::array<std::uint64_t, kNumChannelSides> num_posted_{};
+  std::vector<std::uint64_t> num_posted_;
   int num_exceptions_;
 };
 
 }  // namespace
 
-std::unique_ptr<SlotExchange> make_fence(const Communicator& communicator, Neighbours neighbours) {
+std::unique_ptr<SlotExchange> make_fence(const Communicator& communicator,
+                                         const Neighbours& neighbours) {
   return std::make_unique<Fence>(communicator, neighbours);
 }
 

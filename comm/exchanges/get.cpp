@@ -16,7 +16,7 @@ class Get final : public OneSidedExchange {
  protected:
   std::byte* outbox(const MessageKey& key) override {
     return inbox(key);
-  }  // slots hold what goes to key.side
+  }  // slots hold what goes to key.link
 
   void post(const MessageKey& key, const MessageHeader& header) override {
     write_header(header, outbox(key));
@@ -52,8 +52,8 @@ class Get final : public OneSidedExchange {
       throw RunError(describe(key, target(key)) + " is longer than its slot");
     const int count = mpi_count(kHeaderBytes + bytes);
     check(MPI_Rget(local(key), count, MPI_BYTE, target(key),
-                   static_cast<MPI_Aint>(layout().slot(SlotLayout::at_receiver(key))), count,
-                   MPI_BYTE, window().handle(), &requests_[index(key)]),
+                   static_cast<MPI_Aint>(layout().slot(at_receiver(key))), count, MPI_BYTE,
+                   window().handle(), &requests_[index(key)]),
           "MPI_Rget");
     return true;
   }
@@ -62,13 +62,13 @@ class Get final : public OneSidedExchange {
     return word(key) >> kLengthBits == announce(key.number, 0) >> kLengthBits;
   }
 
-  std::array<MPI_Request, kNumChannelSides> requests_{MPI_REQUEST_NULL, MPI_REQUEST_NULL,
-                                                      MPI_REQUEST_NULL, MPI_REQUEST_NULL};
+  std::vector<MPI_Request> requests_ = std::vector<MPI_Request>(num_positions(), MPI_REQUEST_NULL);
 };
 
 }  // namespace
 
-std::unique_ptr<SlotExchange> make_get(const Communicator& communicator, Neighbours neighbours) {
+std::unique_ptr<SlotExchange> make_get(const Communicator& communicator,
+                                       const Neighbours& neighbours) {
   return std::make_unique<Get>(communicator, neighbours);
 }
 

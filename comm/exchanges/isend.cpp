@@ -9,7 +9,7 @@
 namespace barchan {
 namespace {
 
-/// Two-sided, non-blocking: both slots of each side have a persistent receive posted before the
+/// Two-sided, non-blocking: both slots of each link have a persistent receive posted before the
 /// message can come.
 class Isend final : public TwoSidedExchange {
  public:
@@ -26,12 +26,9 @@ class Isend final : public TwoSidedExchange {
  protected:
   void allocate(SlotCapacity capacity) override {
     TwoSidedExchange::allocate(capacity);
-    for (const Channel channel : {Channel::Halo, Channel::Bulk}) {
-      for (const Side side : {Side::Left, Side::Right}) {
-        if (!neighbours().has(side)) continue;
-        for (const std::uint64_t number : {1U, 2U}) receive({channel, side, number});
-      }
-    }
+    for_each_slot([this](const MessageKey& key) {
+      if (neighbours().has(key.link)) receive(key);
+    });
   }
 
   void retire() override {
@@ -60,30 +57,29 @@ class Isend final : public TwoSidedExchange {
   void receive(const MessageKey& key) {
     Slot& slot = inbox(key);
     check(MPI_Recv_init(slot.memory.data(), mpi_count(slot.memory.size()), MPI_BYTE, neighbour(key),
-                        key.channel_side(), communicator().handle(), &slot.request),
+                        key.position(), communicator().handle(), &slot.request),
           "MPI_Recv_init");
     start(slot);
   }
 
   void withdraw() {
-    for (int position = 0; position < 2 * kNumChannelSides; ++position) {
-      const MessageKey key{static_cast<Channel>(position / 4), static_cast<Side>(position / 2 % 2),
-                           static_cast<std::uint64_t>(position % 2)};
+    for_each_slot([this](const MessageKey& key) {
       Slot& slot = inbox(key);
-      if (slot.request == MPI_REQUEST_NULL) continue;
+      if (slot.request == MPI_REQUEST_NULL) return;
       if (slot.is_posted) {
         check(MPI_Cancel(&slot.request), "MPI_Cancel");
         check_watched("MPI_Wait", [&] { return MPI_Wait(&slot.request, MPI_STATUS_IGNORE); });
         slot.is_posted = false;
       }
       check(MPI_Request_free(&slot.request), "MPI_Request_free");
-    }
+    });
   }
 };
 
 }  // namespace
 
-std::unique_ptr<SlotExchange> make_isend(const Communicator& communicator, Neighbours neighbours) {
+std::unique_ptr<SlotExchange> make_isend(const Communicator& communicator,
+                                         const Neighbours& neighbours) {
   return std::make_unique<Isend>(communicator, neighbours);
 }
 

@@ -16,7 +16,7 @@ namespace {
 struct Entry {
   std::string_view name;
   std::string_view summary;
-  std::unique_ptr<SlotExchange> (*make)(const Communicator&, Neighbours);
+  std::unique_ptr<SlotExchange> (*make)(const Communicator&, const Neighbours&);
 };
 
 constexpr std::array kEntries{
@@ -49,7 +49,7 @@ const Entry& entry_of(std::string_view name) {
 }
 
 std::unique_ptr<Exchange> make_plain(std::string_view name, const Communicator& communicator,
-                                     Neighbours neighbours, const ExchangeOptions& options) {
+                                     const Neighbours& neighbours, const ExchangeOptions& options) {
   std::unique_ptr<SlotExchange> exchange = entry_of(name).make(communicator, neighbours);
   exchange->start({options.halo_bytes, options.bulk_bytes});
   return exchange;
@@ -58,7 +58,8 @@ std::unique_ptr<Exchange> make_plain(std::string_view name, const Communicator& 
 }  // namespace
 
 std::unique_ptr<Exchange> make_exchange(std::string_view name, const Communicator& communicator,
-                                        Neighbours neighbours, const ExchangeOptions& options) {
+                                        const Neighbours& neighbours,
+                                        const ExchangeOptions& options) {
   check_exchange_name(name);
   const auto parts = ExchangeMix::parse(name);
   std::unique_ptr<Exchange> exchange =
@@ -67,8 +68,8 @@ std::unique_ptr<Exchange> make_exchange(std::string_view name, const Communicato
   if (!(options.hooks.max_delay_seconds > 0.0)) return exchange;
   const std::uint64_t seed =
       options.hooks.delay_seed * 1000003U + static_cast<std::uint64_t>(communicator.rank());
-  return std::make_unique<DelayedExchange>(std::move(exchange), options.hooks.max_delay_seconds,
-                                           seed);
+  return std::make_unique<DelayedExchange>(std::move(exchange), neighbours.num_links(),
+                                           options.hooks.max_delay_seconds, seed);
 }
 
 void check_exchange_name(std::string_view name) {
@@ -82,7 +83,7 @@ void check_exchange_name(std::string_view name) {
   }
 }
 
-std::string exchanges_here(const Communicator& communicator, Neighbours neighbours) {
+std::string exchanges_here(const Communicator& communicator, const Neighbours& neighbours) {
   std::string working;
   std::vector<ExchangeObstacle> others;
   for (const Entry& entry : kEntries) {

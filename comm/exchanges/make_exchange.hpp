@@ -15,7 +15,7 @@ namespace barchan {
 /// remedy, where this MPI or network cannot carry it.
 [[nodiscard]] std::unique_ptr<Exchange> make_exchange(std::string_view name,
                                                       const Communicator& communicator,
-                                                      Neighbours neighbours,
+                                                      const Neighbours& neighbours,
                                                       const ExchangeOptions& options = {});
 
 /// Names that make_exchange takes, alone or as "a+b"; the default first.
@@ -26,6 +26,7 @@ void check_exchange_name(std::string_view name);
 
 /// Which exchanges work between these ranks, and why the others do not; for people. Makes each of
 /// them. Collective; the same on every rank.
-[[nodiscard]] std::string exchanges_here(const Communicator& communicator, Neighbours neighbours);
+[[nodiscard]] std::string exchanges_here(const Communicator& communicator,
+                                         const Neighbours& neighbours);
 
 }  // namespace barchan

@@ -16,7 +16,7 @@ class PutFlag final : public OneSidedExchange {
     std::byte* message = outbox(key);
     write_header(header, message);
     window().put({message, kHeaderBytes + header.bytes}, target(key),
-                 layout().slot(SlotLayout::at_receiver(key)));
+                 layout().slot(at_receiver(key)));
     window().flush(target(key));
     put_word(key, key.number);
     window().flush(target(key));
@@ -35,7 +35,7 @@ class PutFlag final : public OneSidedExchange {
 }  // namespace
 
 std::unique_ptr<SlotExchange> make_put_flag(const Communicator& communicator,
-                                            Neighbours neighbours) {
+                                            const Neighbours& neighbours) {
   return std::make_unique<PutFlag>(communicator, neighbours);
 }
 

@@ -30,8 +30,7 @@ class PutInband final : public OneSidedExchange {
     write_header(sealed, message);
     const std::size_t end = trailer_offset(header.bytes);
     std::memcpy(message + end, &key.number, sizeof(key.number));
-    window().put({message, end + sizeof(key.number)}, target(key),
-                 layout().slot(SlotLayout::at_receiver(key)));
+    window().put({message, end + sizeof(key.number)}, target(key), layout().slot(at_receiver(key)));
     window().flush_local(target(key));
   }
 
@@ -71,7 +70,7 @@ class PutInband final : public OneSidedExchange {
 }  // namespace
 
 std::unique_ptr<SlotExchange> make_put_inband(const Communicator& communicator,
-                                              Neighbours neighbours) {
+                                              const Neighbours& neighbours) {
   return std::make_unique<PutInband>(communicator, neighbours);
 }
 

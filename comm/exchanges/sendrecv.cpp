@@ -20,7 +20,7 @@ class Sendrecv final : public TwoSidedExchange {
   const std::byte* arrived(const MessageKey& key) override {
     Slot& slot = inbox(key);
     check(MPI_Irecv(slot.memory.data(), mpi_count(slot.memory.size()), MPI_BYTE, neighbour(key),
-                    key.channel_side(), communicator().handle(), &slot.request),
+                    key.position(), communicator().handle(), &slot.request),
           "MPI_Irecv");
     MPI_Status status;
     wait_until(
@@ -41,7 +41,7 @@ class Sendrecv final : public TwoSidedExchange {
 }  // namespace
 
 std::unique_ptr<SlotExchange> make_sendrecv(const Communicator& communicator,
-                                            Neighbours neighbours) {
+                                            const Neighbours& neighbours) {
   return std::make_unique<Sendrecv>(communicator, neighbours);
 }
 

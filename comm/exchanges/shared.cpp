@@ -1,4 +1,5 @@
 #include <atomic>
+#include <vector>
 
 #include <barchan/comm/base/mpi_error.hpp>
 #include <barchan/comm/base/reduction.hpp>
@@ -29,12 +30,13 @@ class SharedMemory final : public SlotExchange {
                        "use `--exchange shared+put-inband`, which shares memory within each node, "
                        "or `shared+isend` where no window can be made between nodes");
     }
-    layout_ = SlotLayout{capacity};
+    layout_ = SlotLayout{capacity, most_links()};
     window_ = Window(communicator(), layout_.total(), Window::Memory::Shared);
     window_.lock_all();
-    for (const Side side : {Side::Left, Side::Right}) {
-      if (neighbours().has(side)) {
-        theirs_[index_of(side)] = window_.base_of(neighbours().rank(side));
+    theirs_.resize(static_cast<std::size_t>(neighbours().num_links()));
+    for (int link = 0; link < neighbours().num_links(); ++link) {
+      if (neighbours().has(link)) {
+        theirs_[static_cast<std::size_t>(link)] = window_.base_of(neighbours().rank(link));
       }
     }
   }
@@ -49,9 +51,8 @@ class SharedMemory final : public SlotExchange {
   }
 
   const std::byte* arrived(const MessageKey& key) override {
-    const MessageKey at_sender =
-        SlotLayout::at_receiver(key);  // the sender's name for it: the other side
-    std::byte* sender = theirs_[index_of(key.side)];
+    const MessageKey at_sender = at_receiver(key);  // the other end's name for it
+    std::byte* sender = theirs_[static_cast<std::size_t>(key.link)];
     if (word(sender, at_sender).load(std::memory_order_acquire) < key.number) {
       if (++num_empty_ % kEmptyPerProgress == 0) progress();
       return nullptr;
@@ -71,13 +72,13 @@ class SharedMemory final : public SlotExchange {
   Window window_;
   SlotLayout layout_;
   std::uint64_t num_empty_ = 0;
-  std::array<std::byte*, 2> theirs_{};
+  std::vector<std::byte*> theirs_;  ///< by link
 };
 
 }  // namespace
 
 std::unique_ptr<SlotExchange> make_shared_memory(const Communicator& communicator,
-                                                 Neighbours neighbours) {
+                                                 const Neighbours& neighbours) {
   return std::make_unique<SharedMemory>(communicator, neighbours);
 }
 

@@ -28,7 +28,7 @@ void agree_pattern(const Communicator& communicator, std::size_t& bytes, WorkPat
 }
 
 ExchangeCandidate measure(const std::string& name, const Communicator& communicator,
-                          Neighbours neighbours, const ExchangeOptions& options,
+                          const Neighbours& neighbours, const ExchangeOptions& options,
                           const ExchangeChoice& choice) {
   ExchangeCandidate candidate;
   candidate.name = name;
@@ -97,7 +97,7 @@ std::vector<std::string> auto_candidates(const Links& links) {
   return names;
 }
 
-SelectedExchange select_exchange(const Communicator& communicator, Neighbours neighbours,
+SelectedExchange select_exchange(const Communicator& communicator, const Neighbours& neighbours,
                                  const ExchangeOptions& options, std::size_t bytes,
                                  WorkPattern work) {
   const std::int64_t begin = now_ns();

@@ -48,7 +48,7 @@ struct SelectedExchange {
 /// @param work   of a step; the least of all ranks counts
 /// Errors: MpiError, RunError.
 [[nodiscard]] SelectedExchange select_exchange(const Communicator& communicator,
-                                               Neighbours neighbours,
+                                               const Neighbours& neighbours,
                                                const ExchangeOptions& options, std::size_t bytes,
                                                WorkPattern work);
 

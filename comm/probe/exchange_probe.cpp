@@ -36,7 +36,7 @@ SpinWork& work_of_this_thread() {
 
 }  // namespace
 
-ExchangeProbe::ExchangeProbe(const Communicator& communicator, Neighbours neighbours,
+ExchangeProbe::ExchangeProbe(const Communicator& communicator, const Neighbours& neighbours,
                              Exchange& exchange, std::size_t bytes, double budget_seconds)
     : communicator_(communicator),
       neighbours_(neighbours),
@@ -80,17 +80,17 @@ void ExchangeProbe::repeat(Once&& once) {
   }
 }
 
-void ExchangeProbe::send(Side side) {
-  if (!neighbours_.has(side)) return;
-  const auto message = exchange_.outgoing(side, bytes_);
+void ExchangeProbe::send(int link) {
+  if (!neighbours_.has(link)) return;
+  const auto message = exchange_.outgoing(link, bytes_);
   if (!message.empty()) message.front() = message.back() = std::byte{1};
-  exchange_.send(side);
+  exchange_.send(link);
 }
 
 bool ExchangeProbe::poll_all() {
   bool all = true;
-  for (const Side side : kSides) {
-    if (neighbours_.has(side) && !exchange_.poll(side)) all = false;
+  for (int link = 0; link < neighbours_.num_links(); ++link) {
+    if (neighbours_.has(link) && !exchange_.poll(link)) all = false;
   }
   return all;
 }
@@ -105,7 +105,7 @@ ExchangeProbe::Step ExchangeProbe::step(const WorkPattern& work, bool polls) {
     return result;
   };
   timed([&] {
-    for (const Side side : kSides) send(side);
+    for (int link = 0; link < neighbours_.num_links(); ++link) send(link);
     return true;
   });
   bool is_in = false;
@@ -122,8 +122,8 @@ ExchangeProbe::Step ExchangeProbe::step(const WorkPattern& work, bool polls) {
                });
   }
   timed([&] {
-    for (const Side side : kSides) {
-      if (neighbours_.has(side)) exchange_.release(side);
+    for (int link = 0; link < neighbours_.num_links(); ++link) {
+      if (neighbours_.has(link)) exchange_.release(link);
     }
     return true;
   });
@@ -161,33 +161,42 @@ double ExchangeProbe::exposed(const WorkPattern& work) {
   return slowest(std::max(0.0, whole - median_work(work)));
 }
 
-double ExchangeProbe::bounce(Side side, bool begins) {
+double ExchangeProbe::bounce(int link, bool begins) {
   const std::int64_t begin = now_ns();
-  if (begins) send(side);
-  wait_until([&] { return exchange_.poll(side); },
+  if (begins) send(link);
+  wait_until([&] { return exchange_.poll(link); },
              [&] {
                return "rank " + std::to_string(communicator_.rank()) + ": ping-pong by '" +
                       std::string(exchange_.name()) + "'";
              });
-  exchange_.release(side);
-  if (!begins) send(side);
+  exchange_.release(link);
+  if (!begins) send(link);
   return 0.5 * seconds_since(begin);
 }
 
-// Pairs of ranks (parity, parity + 1), (parity + 2, parity + 3), … at the same time.
+// The first of the two takes the link with its lowest number, the second the other end of that.
+int ExchangeProbe::link_between(int other, bool begins) const {
+  int found = -1;
+  for (int link = 0; link < neighbours_.num_links(); ++link) {
+    if (!neighbours_.has(link) || neighbours_.rank(link) != other) continue;
+    if (found < 0 || (!begins && neighbours_.peer(link) < neighbours_.peer(found))) found = link;
+  }
+  return found;
+}
+
+// Pairs of ranks (parity, parity + 1), (parity + 2, parity + 3), … at the same time, where there is
+// a link between them.
 ExchangeProbe::Spread ExchangeProbe::ping_pong(int parity) {
   const bool begins = communicator_.rank() % 2 == parity;
-  const Side side = begins ? Side::Right : Side::Left;
-  const bool is_in_pair =
-      begins ? communicator_.rank() + 1 < communicator_.size() : communicator_.rank() > 0;
+  const int link = link_between(communicator_.rank() + (begins ? 1 : -1), begins);
   communicator_.barrier();
   std::vector<double> times;
   repeat([&](bool counts) {
-    if (!is_in_pair) return;
-    const double half = bounce(side, begins);
+    if (link < 0) return;
+    const double half = bounce(link, begins);
     if (counts) times.push_back(half);
   });
-  return begins && is_in_pair ? spread_of(times) : Spread{};
+  return begins && link >= 0 ? spread_of(times) : Spread{};
 }
 
 double ExchangeProbe::half_round_trip() {

@@ -14,8 +14,8 @@
 namespace barchan {
 namespace {
 
-void probe_sizes(const Communicator& communicator, Neighbours neighbours, const std::string& name,
-                 const ProbeOptions& options, ProbeReport& report) {
+void probe_sizes(const Communicator& communicator, const Neighbours& neighbours,
+                 const std::string& name, const ProbeOptions& options, ProbeReport& report) {
   ExchangeOptions first;
   first.halo_bytes = *std::ranges::max_element(options.sizes);
   first.hooks = options.hooks;

@@ -13,7 +13,7 @@ namespace barchan {
 
 /// What one exchange costs for messages of one size. Medians in seconds, of the slowest rank.
 struct ExchangeCost {
-  /// Between two neighbours, one after the other; for exchanges whose sides go together, both ways
+  /// Between two neighbours, one after the other; for exchanges whose links go together, both ways
   /// at once.
   double half_round_trip = 0.0;
   double half_p99 = 0.0;      ///< of these trips, 99 in 100 are as short
@@ -45,7 +45,7 @@ class ExchangeProbe {
  public:
   /// @param bytes  of every message; reserved in the exchange
   /// @param budget_seconds  for each measurement, about; at least three repetitions are made
-  ExchangeProbe(const Communicator& communicator, Neighbours neighbours, Exchange& exchange,
+  ExchangeProbe(const Communicator& communicator, const Neighbours& neighbours, Exchange& exchange,
                 std::size_t bytes, double budget_seconds);
 
   /// So many repetitions for each measurement, instead of what the budget allows.
@@ -69,14 +69,15 @@ class ExchangeProbe {
   Step median_step(const WorkPattern& work, bool polls);
   double median_work(const WorkPattern& work);
   double both_ways();
-  double bounce(Side side, bool begins);
+  double bounce(int link, bool begins);
+  [[nodiscard]] int link_between(int other, bool begins) const;
   Spread ping_pong(int parity);
   /// Of half a round trip; @pre both_ways() was called
   Spread half_trips();
   template <class Once>
   void repeat(Once&& once);
   [[nodiscard]] double slowest(double mine) const;
-  void send(Side side);
+  void send(int link);
   bool poll_all();
 
   const Communicator& communicator_;

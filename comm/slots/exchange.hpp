@@ -31,26 +31,26 @@ struct ExchangeStats {
   [[nodiscard]] std::uint64_t bytes() const { return halo_bytes + bulk_bytes; }
 };
 
-/// Instants of the latest halo message on one side, steady clock [ns]; zero = not yet.
+/// Instants of the latest halo message on one link, steady clock [ns]; zero = not yet.
 /// `posted` was read on the neighbour's clock: comparable within a node, to be aligned between
 /// nodes.
 struct HaloTimes {
-  std::int64_t sent = 0;     ///< this rank's own message to that side
+  std::int64_t sent = 0;     ///< this rank's own message
   std::int64_t posted = 0;   ///< the neighbour's message, by its clock
   std::int64_t noticed = 0;  ///< poll() was true for the first time
 };
 
-/// One way of exchanging halo and bulk (migration, rebuild ghosts) messages with the two
-/// neighbours.
+/// One way of exchanging halo and bulk (migration, rebuild ghosts) messages with the
+/// neighbours at the other ends of this rank's links.
 ///
-/// Halo: the n-th message to a side meets the n-th from it; lengths may differ by message and side.
-/// In time the sides are free, in count they are not: in every step one message each way per
-/// existing side. The order is
+/// Halo: the n-th message over a link meets the n-th from it; lengths may differ by message and
+/// link. In time the links are free, in count they are not: in every step one message each way per
+/// link. The order is
 ///
 ///     outgoing(n) → send(n)
 ///     poll(n) → received(n) → release(n) → outgoing(n + 1)
 ///
-/// for each side. The last edge is the caller's duty; with it two slots per direction are enough
+/// for each link. The last edge is the caller's duty; with it two slots per direction are enough
 /// and no credits are needed (slot_exchange.hpp proves it). A breach throws std::logic_error.
 ///
 /// One caller at a time. Construction, reserve and destruction are collective over the
@@ -71,27 +71,26 @@ class Exchange {
   /// message sent has been received and released.
   virtual void reserve(std::size_t bytes) = 0;
 
-  /// The buffer for the next halo message to `side`; valid until send. @pre bytes <= reserved
-  [[nodiscard]] virtual std::span<std::byte> outgoing(Side side, std::size_t bytes) = 0;
+  /// The buffer for the next halo message over a link; valid until send. @pre bytes <= reserved
+  [[nodiscard]] virtual std::span<std::byte> outgoing(int link, std::size_t bytes) = 0;
 
   /// Starts the message; as early as possible. Does not wait for the neighbour.
-  virtual void send(Side side) = 0;
+  virtual void send(int link) = 0;
 
-  /// True when the next message from `side` is in; stays true until release. Never blocks, but in
-  /// exchanges that is_blocking(). False without a neighbour on that side.
-  [[nodiscard]] virtual bool poll(Side side) = 0;
+  /// True when the next message of a link is in; stays true until release. Never blocks, but in
+  /// exchanges that is_blocking(). False without a neighbour there.
+  [[nodiscard]] virtual bool poll(int link) = 0;
 
-  /// @pre poll(side); valid until release
-  [[nodiscard]] virtual std::span<const std::byte> received(Side side) const = 0;
+  /// @pre poll(link); valid until release
+  [[nodiscard]] virtual std::span<const std::byte> received(int link) const = 0;
 
   /// Consumed: the next message may be looked for.
-  virtual void release(Side side) = 0;
+  virtual void release(int link) = 0;
 
-  /// Starts messages of any length to both neighbours (empty where there is none); the spans may go
-  /// when this returns. Local, but every rank does it equally often, and ends one before it begins
+  /// Starts messages of any length, by link (empty where nobody is); the spans may go when this
+  /// returns. Local, but every rank does it equally often, and ends one before it begins
   /// the next.
-  virtual void begin_bulk(std::span<const std::byte> to_left,
-                          std::span<const std::byte> to_right) = 0;
+  virtual void begin_bulk(std::span<const std::span<const std::byte>> outgoing) = 0;
 
   /// Lets what is under way advance, the neighbours' gets and large sends too; cheap. For a rank
   /// that has all it needs and still owes others theirs. Never blocks.
@@ -100,22 +99,22 @@ class Exchange {
   /// Whether a rank may need progress(): false where messages move without help.
   [[nodiscard]] virtual bool needs_progress() const { return true; }
 
-  /// True when both sides are complete, in and out.
+  /// True when all links are complete, in and out.
   [[nodiscard]] virtual bool poll_bulk() = 0;
 
-  /// What came from `side`; the caller may take it away. @pre poll_bulk()
-  [[nodiscard]] virtual std::vector<std::byte>& bulk(Side side) = 0;
+  /// What came over a link; the caller may take it away. @pre poll_bulk()
+  [[nodiscard]] virtual std::vector<std::byte>& bulk(int link) = 0;
 
   /// When the neighbour sent the last part of the bulk that is in, by its clock (see HaloTimes).
-  [[nodiscard]] virtual std::int64_t bulk_posted(Side side) const = 0;
+  [[nodiscard]] virtual std::int64_t bulk_posted(int link) const = 0;
 
   [[nodiscard]] virtual ExchangeStats stats() const = 0;
-  [[nodiscard]] virtual HaloTimes halo_times(Side side) const = 0;
+  [[nodiscard]] virtual HaloTimes halo_times(int link) const = 0;
 
   /// Whether poll waits for the neighbour: such an exchange hides nothing.
   [[nodiscard]] virtual bool is_blocking() const { return false; }
 
-  /// Whether a rank may wait for one side before it has sent to the other, as the `return` scheme
+  /// Whether a rank may wait for one link before it has sent over others, as the `return` scheme
   /// does.
   [[nodiscard]] virtual bool allows_uneven_sides() const { return true; }
 };

@@ -30,8 +30,8 @@ std::string fault_of(const MessageHeader& header, std::uint64_t expected_number,
 
 std::string describe(const MessageKey& key, int neighbour) {
   return std::string(key.channel == Channel::Halo ? "halo" : "bulk") + " message " +
-         std::to_string(key.number) + " from rank " + std::to_string(neighbour) + " (" +
-         name_of(key.side) + ")";
+         std::to_string(key.number) + " from rank " + std::to_string(neighbour) + " (link " +
+         std::to_string(key.link) + ")";
 }
 
 }  // namespace barchan

@@ -5,8 +5,6 @@
 #include <span>
 #include <string>
 
-#include <barchan/comm/topology/neighbours.hpp>
-
 namespace barchan {
 
 /// Halo and bulk messages travel in channels of their own: own slots, own sequence words, own
@@ -14,18 +12,18 @@ namespace barchan {
 enum class Channel : int { Halo = 0, Bulk = 1 };
 inline constexpr int kNumChannels = 2;
 
-/// Message `number` (from 1) of a channel, to or from the neighbour at `side`.
+/// Message `number` (from 1) of a channel, to or from the neighbour at a link.
 struct MessageKey {
   Channel channel = Channel::Halo;
-  Side side = Side::Left;
+  int link = 0;
   std::uint64_t number = 0;
 
   [[nodiscard]] constexpr int slot() const { return static_cast<int>(number & 1U); }
-  [[nodiscard]] constexpr int channel_side() const {
-    return 2 * static_cast<int>(channel) + static_cast<int>(side);
+  /// Of its channel and link among all; also the tag of its receiver.
+  [[nodiscard]] constexpr int position() const {
+    return kNumChannels * link + static_cast<int>(channel);
   }
 };
-inline constexpr int kNumChannelSides = 2 * kNumChannels;
 
 /// A message in memory; only some exchanges have a trailer:
 ///
@@ -61,7 +59,7 @@ void write_header(const MessageHeader& header, std::byte* message);
 [[nodiscard]] std::string fault_of(const MessageHeader& header, std::uint64_t expected_number,
                                    std::size_t at_most);
 
-/// "halo message 17 from rank 2 (left)"
+/// "halo message 17 from rank 2 (link 0)"
 [[nodiscard]] std::string describe(const MessageKey& key, int neighbour);
 
 }  // namespace barchan

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <vector>
@@ -11,7 +10,7 @@
 namespace barchan {
 
 /// Common to the exchanges that put into the neighbour's slots under one MPI_Win_lock_all.
-/// One outbox per channel and side, outside the window: it is free again when post() returns.
+/// One outbox per channel and link, outside the window: it is free again when post() returns.
 class OneSidedExchange : public SlotExchange {
  public:
   using SlotExchange::SlotExchange;
@@ -28,15 +27,15 @@ class OneSidedExchange : public SlotExchange {
 
   [[nodiscard]] const Window& window() const { return window_; }
   [[nodiscard]] const SlotLayout& layout() const { return layout_; }
-  [[nodiscard]] int target(const MessageKey& key) const { return neighbours().rank(key.side); }
+  [[nodiscard]] int target(const MessageKey& key) const { return neighbours().rank(key.link); }
   [[nodiscard]] std::byte* inbox(const MessageKey& key) const {
     return window_.base() + layout_.slot(key);
   }
 
-  /// Memory outside the window for one message per channel and side.
+  /// Memory outside the window for one message per channel and link.
   [[nodiscard]] std::byte* local(const MessageKey& key) { return local_[index(key)].data(); }
 
-  /// This rank's sequence word for messages from key.side, acquired.
+  /// This rank's sequence word for messages from key.link, acquired.
   [[nodiscard]] std::uint64_t word(const MessageKey& key) const {
     return std::atomic_ref(*reinterpret_cast<std::uint64_t*>(window_.base() + layout_.word(key)))
         .load(std::memory_order_acquire);
@@ -48,9 +47,8 @@ class OneSidedExchange : public SlotExchange {
   Window window_;
   SlotLayout layout_;
   bool is_unified_ = false;
-  std::array<std::vector<std::byte>, kNumChannelSides> local_;
-  std::array<std::uint64_t, kNumChannelSides>
-      word_values_{};  // a put's origin must live until it is flushed
+  std::vector<std::vector<std::byte>> local_;
+  std::vector<std::uint64_t> word_values_;  // a put's origin must live until it is flushed
 };
 
 }  // namespace barchan

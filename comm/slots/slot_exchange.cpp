@@ -16,8 +16,16 @@ constexpr std::size_t kLargestFragment = std::size_t{16} << 20;
 
 }  // namespace
 
-SlotExchange::SlotExchange(const Communicator& communicator, Neighbours neighbours)
-    : communicator_(communicator.duplicate()), neighbours_(neighbours) {}
+SlotExchange::SlotExchange(const Communicator& communicator, const Neighbours& neighbours)
+    : communicator_(communicator.duplicate()),
+      neighbours_(neighbours),
+      tracks_(num_positions()),
+      bulk_links_(static_cast<std::size_t>(neighbours.num_links())),
+      halo_times_(static_cast<std::size_t>(neighbours.num_links())) {
+  std::int64_t most = neighbours.num_links();
+  communicator_.allreduce_max(std::span(&most, 1));
+  most_links_ = static_cast<int>(most);
+}
 
 void SlotExchange::start(SlotCapacity capacity) {
   capacity_ = {round_to_line(capacity.halo),
@@ -28,7 +36,8 @@ void SlotExchange::start(SlotCapacity capacity) {
 
 // Memory that is not there is often granted, and missed only when it is touched.
 void SlotExchange::require_room(SlotCapacity capacity) const {
-  constexpr double slots = 8.0, most = 2147483647.0;  // both ways; one MPI call moves so much
+  constexpr double most = 2147483647.0;                 // one MPI call moves so much
+  const double slots = 4.0 * std::max(1, most_links_);  // two each way
   const double halo = static_cast<double>(capacity.halo), bulk = static_cast<double>(capacity.bulk);
   const double needed = slots * (halo + bulk);
   const bool fits =
@@ -56,20 +65,21 @@ void SlotExchange::reserve(std::size_t bytes) {
       std::min(static_cast<std::size_t>(largest_bulk) * 5 / 4, kLargestFragment);
   capacity_.halo = round_to_line(bytes + bytes / 2);
   capacity_.bulk = round_to_line(std::max(capacity_.bulk, wanted_bulk));
-  tracks_ = {};
+  tracks_.assign(tracks_.size(), {});
   allocate(capacity_);
   ++stats_.growths;
 }
 
-void SlotExchange::require_neighbour(Side side, const char* what) const {
-  if (!neighbours_.has(side)) [[unlikely]] {
-    throw std::logic_error(std::string(what) + ": there is no neighbour on the " + name_of(side));
+void SlotExchange::require_neighbour(int link, const char* what) const {
+  if (!neighbours_.has(link)) [[unlikely]] {
+    throw std::logic_error(std::string(what) + ": there is no neighbour at link " +
+                           std::to_string(link));
   }
 }
 
-std::byte* SlotExchange::open_outbox(Channel channel, Side side, std::size_t bytes) {
-  require_neighbour(side, "Exchange::outgoing");
-  Track& mine = track(channel, side);
+std::byte* SlotExchange::open_outbox(Channel channel, int link, std::size_t bytes) {
+  require_neighbour(link, "Exchange::outgoing");
+  Track& mine = track(channel, link);
   if (mine.released < mine.sent) [[unlikely]] {
     throw std::logic_error("Exchange::outgoing: the neighbour's message " +
                            std::to_string(mine.sent) + " must be released before message " +
@@ -82,15 +92,15 @@ std::byte* SlotExchange::open_outbox(Channel channel, Side side, std::size_t byt
   }
   mine.outgoing_bytes = bytes;
   mine.is_packing = true;
-  return outbox({channel, side, mine.sent + 1});
+  return outbox({channel, link, mine.sent + 1});
 }
 
-std::span<std::byte> SlotExchange::outgoing(Side side, std::size_t bytes) {
-  return {open_outbox(Channel::Halo, side, bytes) + kHeaderBytes, bytes};
+std::span<std::byte> SlotExchange::outgoing(int link, std::size_t bytes) {
+  return {open_outbox(Channel::Halo, link, bytes) + kHeaderBytes, bytes};
 }
 
-void SlotExchange::post_message(Channel channel, Side side, bool has_more) {
-  Track& mine = track(channel, side);
+void SlotExchange::post_message(Channel channel, int link, bool has_more) {
+  Track& mine = track(channel, link);
   if (!mine.is_packing) [[unlikely]]
     throw std::logic_error("Exchange::send: no message was packed");
   const std::int64_t begin = now_ns();
@@ -100,21 +110,21 @@ void SlotExchange::post_message(Channel channel, Side side, bool has_more) {
   header.posted = begin;
   header.has_more = has_more ? 1 : 0;
   mine.is_packing = false;
-  post({channel, side, header.number}, header);
-  if (channel == Channel::Halo) halo_times_[index_of(side)].sent = begin;
+  post({channel, link, header.number}, header);
+  if (channel == Channel::Halo) halo_times_[static_cast<std::size_t>(link)].sent = begin;
 }
 
-void SlotExchange::send(Side side) {
-  post_message(Channel::Halo, side, false);
+void SlotExchange::send(int link) {
+  post_message(Channel::Halo, link, false);
   ++stats_.halo_messages;
-  stats_.halo_bytes += track(Channel::Halo, side).outgoing_bytes;
+  stats_.halo_bytes += track(Channel::Halo, link).outgoing_bytes;
 }
 
-bool SlotExchange::look_for(Channel channel, Side side) {
-  if (!neighbours_.has(side)) return false;
-  Track& mine = track(channel, side);
+bool SlotExchange::look_for(Channel channel, int link) {
+  if (!neighbours_.has(link)) return false;
+  Track& mine = track(channel, link);
   if (mine.is_in) return true;
-  const MessageKey key{channel, side, mine.released + 1};
+  const MessageKey key{channel, link, mine.released + 1};
   const std::byte* message = arrived(key);
   if (message == nullptr) return false;
   accept(key, message);
@@ -122,23 +132,23 @@ bool SlotExchange::look_for(Channel channel, Side side) {
 }
 
 void SlotExchange::accept(const MessageKey& key, const std::byte* message) {
-  Track& mine = track(key.channel, key.side);
+  Track& mine = track(key.channel, key.link);
   mine.header = read_header(message);
   const std::string fault = fault_of(mine.header, key.number, capacity_.of(key.channel));
   if (!fault.empty()) [[unlikely]] {
     throw RunError("rank " + std::to_string(communicator_.rank()) + ": " +
-                   describe(key, neighbours_.rank(key.side)) + " is damaged: " + fault);
+                   describe(key, neighbours_.rank(key.link)) + " is damaged: " + fault);
   }
   mine.payload = {message + kHeaderBytes, static_cast<std::size_t>(mine.header.bytes)};
   mine.is_in = true;
 }
 
-bool SlotExchange::poll(Side side) {
-  const bool was_in = track(Channel::Halo, side).is_in;
-  if (!look_for(Channel::Halo, side)) return false;
+bool SlotExchange::poll(int link) {
+  const bool was_in = track(Channel::Halo, link).is_in;
+  if (!look_for(Channel::Halo, link)) return false;
   if (was_in) return true;
-  const Track& mine = track(Channel::Halo, side);
-  HaloTimes& times = halo_times_[index_of(side)];
+  const Track& mine = track(Channel::Halo, link);
+  HaloTimes& times = halo_times_[static_cast<std::size_t>(link)];
   times.noticed = now_ns();
   times.posted = mine.header.posted;
   if (mine.sent == mine.header.number)
@@ -146,79 +156,80 @@ bool SlotExchange::poll(Side side) {
   return true;
 }
 
-std::span<const std::byte> SlotExchange::received(Side side) const {
-  const Track& mine = track(Channel::Halo, side);
+std::span<const std::byte> SlotExchange::received(int link) const {
+  const Track& mine = track(Channel::Halo, link);
   if (!mine.is_in) [[unlikely]]
     throw std::logic_error("Exchange::received: no message is in");
   return mine.payload;
 }
 
-void SlotExchange::release(Side side) {
-  release_message(Channel::Halo, side);
+void SlotExchange::release(int link) {
+  release_message(Channel::Halo, link);
 }
 
-void SlotExchange::release_message(Channel channel, Side side) {
-  Track& mine = track(channel, side);
+void SlotExchange::release_message(Channel channel, int link) {
+  Track& mine = track(channel, link);
   if (!mine.is_in) [[unlikely]]
     throw std::logic_error("Exchange::release: no message is in");
   mine.is_in = false;
   mine.payload = {};
   ++mine.released;
-  recycle({channel, side, mine.released});
+  recycle({channel, link, mine.released});
 }
 
-void SlotExchange::begin_bulk(std::span<const std::byte> to_left,
-                              std::span<const std::byte> to_right) {
-  if (!bulk_sides_[0].is_done || !bulk_sides_[1].is_done) {
+void SlotExchange::begin_bulk(std::span<const std::span<const std::byte>> outgoing) {
+  if (!bulk_is_done())
     throw std::logic_error("Exchange::begin_bulk: the last bulk is not complete");
-  }
   bulk_begin_ = now_ns();
-  const std::size_t longest = std::max(to_left.size(), to_right.size());
+  std::size_t longest = 0;
+  for (int link = 0; link < neighbours_.num_links(); ++link) {
+    const auto bytes = outgoing[static_cast<std::size_t>(link)];
+    longest = std::max(longest, bytes.size());
+    prepare_bulk(link, bytes);
+  }
   largest_bulk_ = std::max(largest_bulk_, longest);
-  prepare_bulk(Side::Left, to_left);
-  prepare_bulk(Side::Right, to_right);
   const std::size_t needed =
       std::max<std::size_t>(1, (longest + capacity_.bulk - 1) / capacity_.bulk);
   const std::size_t agreed = agree_rounds(needed);
-  for (const Side side : kSides) {
-    if (agreed > 0) bulk_sides_[index_of(side)].num_rounds = agreed;
-    if (neighbours_.has(side)) send_fragment(side);
+  for (int link = 0; link < neighbours_.num_links(); ++link) {
+    if (agreed > 0) bulk_links_[static_cast<std::size_t>(link)].num_rounds = agreed;
+    if (neighbours_.has(link)) send_fragment(link);
   }
 }
 
-void SlotExchange::prepare_bulk(Side side, std::span<const std::byte> bytes) {
-  if (!bytes.empty()) require_neighbour(side, "Exchange::begin_bulk");
-  BulkSide& mine = bulk_sides_[index_of(side)];
+void SlotExchange::prepare_bulk(int link, std::span<const std::byte> bytes) {
+  if (!bytes.empty()) require_neighbour(link, "Exchange::begin_bulk");
+  BulkLink& mine = bulk_links_[static_cast<std::size_t>(link)];
   mine.out.assign(bytes.begin(), bytes.end());
   mine.in.clear();
   mine.num_sent = 0;
   mine.num_rounds = std::max<std::size_t>(1, (bytes.size() + capacity_.bulk - 1) / capacity_.bulk);
   mine.round = 0;
-  mine.is_done = !neighbours_.has(side);
+  mine.is_done = !neighbours_.has(link);
 }
 
-void SlotExchange::send_fragment(Side side) {
-  BulkSide& mine = bulk_sides_[index_of(side)];
+void SlotExchange::send_fragment(int link) {
+  BulkLink& mine = bulk_links_[static_cast<std::size_t>(link)];
   const std::size_t bytes = std::min(capacity_.bulk, mine.out.size() - mine.num_sent);
-  std::byte* outbox = open_outbox(Channel::Bulk, side, bytes) + kHeaderBytes;
+  std::byte* outbox = open_outbox(Channel::Bulk, link, bytes) + kHeaderBytes;
   std::copy_n(mine.out.data() + mine.num_sent, bytes, outbox);
   mine.num_sent += bytes;
   ++mine.round;
-  post_message(Channel::Bulk, side, mine.round < mine.num_rounds);
+  post_message(Channel::Bulk, link, mine.round < mine.num_rounds);
   ++stats_.bulk_messages;
   stats_.bulk_bytes += bytes;
 }
 
-// One round at most: in a ring of blocking exchanges a rank must serve both sides in turn.
-void SlotExchange::advance_bulk(Side side) {
-  BulkSide& mine = bulk_sides_[index_of(side)];
-  if (mine.is_done || !look_for(Channel::Bulk, side)) return;
-  const Track& channel = track(Channel::Bulk, side);
+// One round at most: in a ring of blocking exchanges a rank must serve all links in turn.
+void SlotExchange::advance_bulk(int link) {
+  BulkLink& mine = bulk_links_[static_cast<std::size_t>(link)];
+  if (mine.is_done || !look_for(Channel::Bulk, link)) return;
+  const Track& channel = track(Channel::Bulk, link);
   mine.in.insert(mine.in.end(), channel.payload.begin(), channel.payload.end());
   const bool they_have_more = channel.header.has_more != 0;
-  release_message(Channel::Bulk, side);
+  release_message(Channel::Bulk, link);
   if (they_have_more || mine.round < mine.num_rounds) {
-    send_fragment(side);
+    send_fragment(link);
   } else {
     mine.is_done = true;
   }
@@ -231,12 +242,14 @@ void SlotExchange::progress() {
       "MPI_Iprobe");
 }
 
+bool SlotExchange::bulk_is_done() const {
+  return std::ranges::all_of(bulk_links_, [](const BulkLink& link) { return link.is_done; });
+}
+
 bool SlotExchange::poll_bulk() {
-  const bool was_done = bulk_sides_[0].is_done && bulk_sides_[1].is_done;
-  if (was_done) return true;
-  advance_bulk(Side::Left);
-  advance_bulk(Side::Right);
-  if (!bulk_sides_[0].is_done || !bulk_sides_[1].is_done) return false;
+  if (bulk_is_done()) return true;
+  for (int link = 0; link < neighbours_.num_links(); ++link) advance_bulk(link);
+  if (!bulk_is_done()) return false;
   stats_.bulk_seconds += seconds_since(bulk_begin_);
   return true;
 }

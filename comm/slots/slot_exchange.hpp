@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include <barchan/comm/slots/exchange.hpp>
@@ -21,7 +20,7 @@ struct SlotCapacity {
 /// What all exchanges have in common: numbers, headers, growth, bulk in fragments, figures. A
 /// derived class says where messages lie and how they travel (the protected part).
 ///
-/// Each channel has two slots per direction; message n uses slot n mod 2. Happens-before, A and B
+/// Each channel has two slots per link and way; message n uses slot n mod 2. Happens-before, A, B
 /// neighbours, one channel:
 ///
 ///     pack A(n) → post A(n) → arrived B(n) → release B(n)     and the same with A and B swapped
@@ -39,23 +38,25 @@ struct SlotCapacity {
 /// reserve() to the largest bulk seen, so that steady rebuilds need one round.
 class SlotExchange : public Exchange {
  public:
-  SlotExchange(const Communicator& communicator, Neighbours neighbours);
+  SlotExchange(const Communicator& communicator, const Neighbours& neighbours);
 
   void reserve(std::size_t bytes) final;
-  std::span<std::byte> outgoing(Side side, std::size_t bytes) final;
-  void send(Side side) final;
-  bool poll(Side side) final;
-  std::span<const std::byte> received(Side side) const final;
-  void release(Side side) final;
-  void begin_bulk(std::span<const std::byte> to_left, std::span<const std::byte> to_right) final;
+  std::span<std::byte> outgoing(int link, std::size_t bytes) final;
+  void send(int link) final;
+  bool poll(int link) final;
+  std::span<const std::byte> received(int link) const final;
+  void release(int link) final;
+  void begin_bulk(std::span<const std::span<const std::byte>> outgoing) final;
   void progress() override;
   bool poll_bulk() final;
-  std::vector<std::byte>& bulk(Side side) final { return bulk_sides_[index_of(side)].in; }
-  std::int64_t bulk_posted(Side side) const final {
-    return track(Channel::Bulk, side).header.posted;
+  std::vector<std::byte>& bulk(int link) final {
+    return bulk_links_[static_cast<std::size_t>(link)].in;
+  }
+  std::int64_t bulk_posted(int link) const final {
+    return track(Channel::Bulk, link).header.posted;
   }
   ExchangeStats stats() const final;
-  HaloTimes halo_times(Side side) const final { return halo_times_[index_of(side)]; }
+  HaloTimes halo_times(int link) const final { return halo_times_[static_cast<std::size_t>(link)]; }
 
   /// First slots; collective. make_exchange calls it once. Errors, the same on every rank:
   /// InputError for slots that do not fit into memory.
@@ -67,11 +68,11 @@ class SlotExchange : public Exchange {
   /// Gives up the slots; nothing is in flight. Collective; all ranks have done so before allocate
   /// is called.
   virtual void retire() = 0;
-  /// Memory of slot_bytes(capacity) for the header and payload of the message to key.side.
+  /// Memory of slot_bytes(capacity) for the header and payload of the message to key.link.
   virtual std::byte* outbox(const MessageKey& key) = 0;
   /// Sends header and payload, which lie in the outbox.
   virtual void post(const MessageKey& key, const MessageHeader& header) = 0;
-  /// The message from key.side, header first, once it is in; until then nullptr. Asked again until
+  /// The message from key.link, header first, once it is in; until then nullptr. Asked again until
   /// it is.
   virtual const std::byte* arrived(const MessageKey& key) = 0;
   /// Consumed.
@@ -86,11 +87,30 @@ class SlotExchange : public Exchange {
   [[nodiscard]] SlotCapacity capacity() const { return capacity_; }
 
   static constexpr std::size_t index(const MessageKey& key) {
-    return static_cast<std::size_t>(key.channel_side());
+    return static_cast<std::size_t>(key.position());
+  }
+  /// Of the rank that has most: windows have one size, which the library may rely on.
+  [[nodiscard]] int most_links() const { return most_links_; }
+  /// Of all channels and links.
+  [[nodiscard]] std::size_t num_positions() const {
+    return static_cast<std::size_t>(kNumChannels * neighbours_.num_links());
+  }
+  /// A message that goes out, as its receiver sees it.
+  [[nodiscard]] MessageKey at_receiver(const MessageKey& key) const {
+    return {key.channel, neighbours_.peer(key.link), key.number};
+  }
+  /// Calls act(key) for both slots of every channel and link.
+  template <class Act>
+  void for_each_slot(Act&& act) const {
+    for (const Channel channel : {Channel::Halo, Channel::Bulk}) {
+      for (int link = 0; link < neighbours_.num_links(); ++link) {
+        for (const std::uint64_t number : {1U, 2U}) act(MessageKey{channel, link, number});
+      }
+    }
   }
 
  private:
-  struct Track {  // of one channel and side
+  struct Track {  // of one channel and link
     std::uint64_t sent = 0;
     std::uint64_t released = 0;
     std::size_t outgoing_bytes = 0;
@@ -99,7 +119,7 @@ class SlotExchange : public Exchange {
     std::span<const std::byte> payload;
     MessageHeader header;
   };
-  struct BulkSide {
+  struct BulkLink {
     std::vector<std::byte> out;
     std::size_t num_sent = 0;    // bytes
     std::size_t num_rounds = 0;  // that this rank needs
@@ -108,27 +128,29 @@ class SlotExchange : public Exchange {
     std::vector<std::byte> in;
   };
 
-  Track& track(Channel channel, Side side) { return tracks_[index(MessageKey{channel, side, 0})]; }
-  const Track& track(Channel channel, Side side) const {
-    return tracks_[index(MessageKey{channel, side, 0})];
+  Track& track(Channel channel, int link) { return tracks_[index(MessageKey{channel, link, 0})]; }
+  const Track& track(Channel channel, int link) const {
+    return tracks_[index(MessageKey{channel, link, 0})];
   }
-  void require_neighbour(Side side, const char* what) const;
+  void require_neighbour(int link, const char* what) const;
   void require_room(SlotCapacity capacity) const;
-  std::byte* open_outbox(Channel channel, Side side, std::size_t bytes);
-  void post_message(Channel channel, Side side, bool has_more);
-  bool look_for(Channel channel, Side side);
+  [[nodiscard]] bool bulk_is_done() const;
+  std::byte* open_outbox(Channel channel, int link, std::size_t bytes);
+  void post_message(Channel channel, int link, bool has_more);
+  bool look_for(Channel channel, int link);
   void accept(const MessageKey& key, const std::byte* message);
-  void release_message(Channel channel, Side side);
-  void prepare_bulk(Side side, std::span<const std::byte> bytes);
-  void send_fragment(Side side);
-  void advance_bulk(Side side);
+  void release_message(Channel channel, int link);
+  void prepare_bulk(int link, std::span<const std::byte> bytes);
+  void send_fragment(int link);
+  void advance_bulk(int link);
 
   Communicator communicator_;
   Neighbours neighbours_;
+  int most_links_ = 0;
   SlotCapacity capacity_;
-  std::array<Track, kNumChannelSides> tracks_{};
-  std::array<BulkSide, 2> bulk_sides_{};
-  std::array<HaloTimes, 2> halo_times_{};
+  std::vector<Track> tracks_;
+  std::vector<BulkLink> bulk_links_;
+  std::vector<HaloTimes> halo_times_;
   std::size_t largest_bulk_ = 0;
   std::int64_t bulk_begin_ = 0;
   ExchangeStats stats_;

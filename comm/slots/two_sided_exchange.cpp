@@ -18,8 +18,11 @@ void wait(MPI_Request& request) {
 
 }  // namespace
 
-TwoSidedExchange::TwoSidedExchange(const Communicator& communicator, Neighbours neighbours)
-    : SlotExchange(communicator, neighbours), num_exceptions_(std::uncaught_exceptions()) {}
+TwoSidedExchange::TwoSidedExchange(const Communicator& communicator, const Neighbours& neighbours)
+    : SlotExchange(communicator, neighbours),
+      inboxes_(num_positions()),
+      outboxes_(num_positions()),
+      num_exceptions_(std::uncaught_exceptions()) {}
 
 // A send may still read its buffer, and a receive still fill one. Where the others cannot be waited
 // for, the buffers are left to the library.
@@ -40,11 +43,11 @@ TwoSidedExchange::~TwoSidedExchange() {
 
 void TwoSidedExchange::allocate(SlotCapacity capacity) {
   for (const Channel channel : {Channel::Halo, Channel::Bulk}) {
-    for (const Side side : {Side::Left, Side::Right}) {
-      if (!neighbours().has(side)) continue;
-      for (Slot& slot : inboxes_[index({channel, side, 0})])
+    for (int link = 0; link < neighbours().num_links(); ++link) {
+      if (!neighbours().has(link)) continue;
+      for (Slot& slot : inboxes_[index({channel, link, 0})])
         slot.memory.resize(slot_bytes(capacity.of(channel)));
-      for (Slot& slot : outboxes_[index({channel, side, 0})])
+      for (Slot& slot : outboxes_[index({channel, link, 0})])
         slot.memory.resize(slot_bytes(capacity.of(channel)));
     }
   }
@@ -67,9 +70,9 @@ std::byte* TwoSidedExchange::outbox(const MessageKey& key) {
 void TwoSidedExchange::post(const MessageKey& key, const MessageHeader& header) {
   Slot& slot = outboxes_[index(key)][static_cast<std::size_t>(key.slot())];
   write_header(header, slot.memory.data());
-  const MessageKey receiver{key.channel, opposite(key.side), key.number};
   check(MPI_Isend(slot.memory.data(), mpi_count(kHeaderBytes + header.bytes), MPI_BYTE,
-                  neighbour(key), receiver.channel_side(), communicator().handle(), &slot.request),
+                  neighbour(key), at_receiver(key).position(), communicator().handle(),
+                  &slot.request),
         "MPI_Isend");
 }
 

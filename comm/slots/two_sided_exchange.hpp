@@ -9,10 +9,10 @@
 namespace barchan {
 
 /// Common to the exchanges that send and receive. The tag names the channel and the receiver's
-/// side, so that nothing is confused where both neighbours are the same rank.
+/// link, so that nothing is confused where both neighbours are the same rank.
 class TwoSidedExchange : public SlotExchange {
  public:
-  TwoSidedExchange(const Communicator& communicator, Neighbours neighbours);
+  TwoSidedExchange(const Communicator& communicator, const Neighbours& neighbours);
   ~TwoSidedExchange() override;
   std::string_view name() const override = 0;
 
@@ -28,12 +28,12 @@ class TwoSidedExchange : public SlotExchange {
     MPI_Request request = MPI_REQUEST_NULL;
     bool is_posted = false;  // a persistent receive that is active
   };
-  using Slots = std::array<std::array<Slot, 2>, kNumChannelSides>;
+  using Slots = std::vector<std::array<Slot, 2>>;  ///< by channel and link
 
   [[nodiscard]] Slot& inbox(const MessageKey& key) {
     return inboxes_[index(key)][static_cast<std::size_t>(key.slot())];
   }
-  [[nodiscard]] int neighbour(const MessageKey& key) const { return neighbours().rank(key.side); }
+  [[nodiscard]] int neighbour(const MessageKey& key) const { return neighbours().rank(key.link); }
   /// Holds the length that came in against the header's.
   void require_whole(const MessageKey& key, const MPI_Status& status);
 

@@ -32,16 +32,20 @@ std::vector<std::int64_t> nodes_of_ranks(const Communicator& communicator, int r
   return nodes;
 }
 
-Links count_links(const Communicator& communicator, Neighbours neighbours, int ranks_per_node) {
+Links count_links(const Communicator& communicator, const Neighbours& neighbours,
+                  int ranks_per_node) {
   const auto nodes = nodes_of_ranks(communicator, ranks_per_node);
-  std::int64_t counts[2] = {};
-  if (neighbours.has(Side::Right)) {
-    counts[0] = 1;
-    counts[1] = nodes[static_cast<std::size_t>(neighbours.right)] ==
-                nodes[static_cast<std::size_t>(communicator.rank())];
+  std::int64_t ends[2] = {};
+  for (int link = 0; link < neighbours.num_links(); ++link) {
+    if (!neighbours.has(link)) continue;
+    ++ends[0];
+    ends[1] += nodes[static_cast<std::size_t>(neighbours.rank(link))] ==
+                       nodes[static_cast<std::size_t>(communicator.rank())]
+                   ? 1
+                   : 0;
   }
-  communicator.allreduce_sum(std::span<std::int64_t>(counts));
-  return {static_cast<int>(counts[0]), static_cast<int>(counts[1])};
+  communicator.allreduce_sum(std::span<std::int64_t>(ends));
+  return {static_cast<int>(ends[0] / 2), static_cast<int>(ends[1] / 2)};
 }
 
 }  // namespace barchan

@@ -14,13 +14,13 @@ namespace barchan {
 [[nodiscard]] std::vector<std::int64_t> nodes_of_ranks(const Communicator& communicator,
                                                        int ranks_per_node = 0);
 
-/// How many pairs of neighbours there are, and how many of them share a node. Collective.
+/// How many links there are in all, and of how many both ranks share a node. Collective.
 struct Links {
   int all = 0, on_node = 0;
 
   [[nodiscard]] bool are_of_both_kinds() const { return on_node > 0 && on_node < all; }
 };
-[[nodiscard]] Links count_links(const Communicator& communicator, Neighbours neighbours,
+[[nodiscard]] Links count_links(const Communicator& communicator, const Neighbours& neighbours,
                                 int ranks_per_node = 0);
 
 }  // namespace barchan

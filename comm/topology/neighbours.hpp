@@ -1,26 +1,42 @@
 #pragma once
 
-#include <barchan/core/base/side.hpp>
+#include <vector>
 
 namespace barchan {
 
-/// Ranks of the strips beside this one; -1 = none. With a periodic strip axis the left of rank 0 is
-/// the last rank; with two ranks both may be the same rank.
-struct Neighbours {
-  int left = -1;
-  int right = -1;
-
-  [[nodiscard]] constexpr int rank(Side side) const { return side == Side::Left ? left : right; }
-  [[nodiscard]] constexpr bool has(Side side) const { return rank(side) >= 0; }
+/// A rank's tie to another one beside it.
+struct Link {
+  int rank = -1;  ///< -1: there is nobody
+  int peer = 0;   ///< the number of this link among those of the other rank
 };
 
-/// The neighbours of strip `rank` of `size`. A lone strip has none, periodic or not: its own image
-/// is no message.
-constexpr Neighbours strip_neighbours(int rank, int size, bool is_periodic) {
-  if (size < 2) return {};
-  Neighbours beside{rank - 1, rank + 1 < size ? rank + 1 : -1};
-  if (is_periodic && beside.left < 0) beside.left = size - 1;
-  if (is_periodic && beside.right < 0) beside.right = 0;
+/// The links of a rank, by number. Two may lead to the same rank.
+struct Neighbours {
+  std::vector<Link> links;
+
+  [[nodiscard]] int num_links() const { return static_cast<int>(links.size()); }
+  [[nodiscard]] int rank(int link) const { return links[static_cast<std::size_t>(link)].rank; }
+  [[nodiscard]] int peer(int link) const { return links[static_cast<std::size_t>(link)].peer; }
+  [[nodiscard]] bool has(int link) const { return link < num_links() && rank(link) >= 0; }
+  [[nodiscard]] bool has_any() const {
+    for (int link = 0; link < num_links(); ++link) {
+      if (has(link)) return true;
+    }
+    return false;
+  }
+};
+
+/// The links of a strip.
+inline constexpr int kLeftLink = 0, kRightLink = 1;
+
+/// Of strip `rank` of `size`, one beside the other. With a periodic axis the left of rank 0 is the
+/// last rank; with two ranks both links lead to the same rank. A lone strip has nobody beside it,
+/// periodic or not: its own image is no message.
+[[nodiscard]] inline Neighbours strip_neighbours(int rank, int size, bool is_periodic) {
+  Neighbours beside{{{-1, kRightLink}, {-1, kLeftLink}}};
+  if (size < 2) return beside;
+  if (rank > 0 || is_periodic) beside.links[kLeftLink].rank = (rank + size - 1) % size;
+  if (rank + 1 < size || is_periodic) beside.links[kRightLink].rank = (rank + 1) % size;
   return beside;
 }
 

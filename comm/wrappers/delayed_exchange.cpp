@@ -8,9 +8,12 @@
 
 namespace barchan {
 
-DelayedExchange::DelayedExchange(std::unique_ptr<Exchange> inner, double max_delay_seconds,
-                                 std::uint64_t seed)
-    : WrappedExchange(std::move(inner)), max_delay_seconds_(max_delay_seconds), random_(seed, 0) {}
+DelayedExchange::DelayedExchange(std::unique_ptr<Exchange> inner, int num_links,
+                                 double max_delay_seconds, std::uint64_t seed)
+    : WrappedExchange(std::move(inner)),
+      max_delay_seconds_(max_delay_seconds),
+      random_(seed, 0),
+      shown_at_(static_cast<std::size_t>(num_links)) {}
 
 std::int64_t DelayedExchange::random_delay_ns() {
   return static_cast<std::int64_t>(random_.uniform(0.0, 1e9 * max_delay_seconds_));
@@ -21,9 +24,9 @@ void DelayedExchange::hold_sometimes() {
     std::this_thread::sleep_for(std::chrono::nanoseconds(random_delay_ns() / 4));
 }
 
-void DelayedExchange::send(Side side) {
+void DelayedExchange::send(int link) {
   hold_sometimes();
-  WrappedExchange::send(side);
+  WrappedExchange::send(link);
 }
 
 bool DelayedExchange::is_shown(std::int64_t& shown_at) {
@@ -31,20 +34,19 @@ bool DelayedExchange::is_shown(std::int64_t& shown_at) {
   return now_ns() >= shown_at;
 }
 
-bool DelayedExchange::poll(Side side) {
-  return WrappedExchange::poll(side) && is_shown(shown_at_[index_of(side)]);
+bool DelayedExchange::poll(int link) {
+  return WrappedExchange::poll(link) && is_shown(shown_at_[static_cast<std::size_t>(link)]);
 }
 
-void DelayedExchange::release(Side side) {
-  shown_at_[index_of(side)] = 0;
-  WrappedExchange::release(side);
+void DelayedExchange::release(int link) {
+  shown_at_[static_cast<std::size_t>(link)] = 0;
+  WrappedExchange::release(link);
 }
 
-void DelayedExchange::begin_bulk(std::span<const std::byte> to_left,
-                                 std::span<const std::byte> to_right) {
+void DelayedExchange::begin_bulk(std::span<const std::span<const std::byte>> outgoing) {
   hold_sometimes();
   bulk_shown_at_ = 0;
-  WrappedExchange::begin_bulk(to_left, to_right);
+  WrappedExchange::begin_bulk(outgoing);
 }
 
 bool DelayedExchange::poll_bulk() {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <array>
 #include <memory>
+#include <vector>
 
 #include <barchan/comm/wrappers/wrapped_exchange.hpp>
 #include <barchan/core/base/random.hpp>
@@ -9,16 +9,17 @@
 namespace barchan {
 
 /// Tests only: any exchange behind a network of moods. Hides what has arrived for a random time,
-/// per message and side, and now and then holds the rank before a send. Order and content are the
+/// per message and link, and now and then holds the rank before a send. Order and content are the
 /// inner exchange's.
 class DelayedExchange final : public WrappedExchange {
  public:
-  DelayedExchange(std::unique_ptr<Exchange> inner, double max_delay_seconds, std::uint64_t seed);
+  DelayedExchange(std::unique_ptr<Exchange> inner, int num_links, double max_delay_seconds,
+                  std::uint64_t seed);
 
-  void send(Side side) override;
-  bool poll(Side side) override;
-  void release(Side side) override;
-  void begin_bulk(std::span<const std::byte> to_left, std::span<const std::byte> to_right) override;
+  void send(int link) override;
+  bool poll(int link) override;
+  void release(int link) override;
+  void begin_bulk(std::span<const std::span<const std::byte>> outgoing) override;
   bool poll_bulk() override;
 
  private:
@@ -28,7 +29,7 @@ class DelayedExchange final : public WrappedExchange {
 
   double max_delay_seconds_;
   CounterRandom random_;
-  std::array<std::int64_t, 2> shown_at_{};  // [ns]; 0 = not in yet
+  std::vector<std::int64_t> shown_at_;  // by link [ns]; 0 = not in yet
   std::int64_t bulk_shown_at_ = 0;
 };
 

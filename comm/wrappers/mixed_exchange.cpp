@@ -49,30 +49,32 @@ std::optional<ExchangeMix> ExchangeMix::parse(std::string_view name) {
 }
 
 MixedExchange::MixedExchange(const ExchangeMix& mix, const Communicator& communicator,
-                             Neighbours neighbours, const ExchangeOptions& options, Make make)
+                             const Neighbours& neighbours, const ExchangeOptions& options,
+                             Make make)
     : name_(mix.near + "+" + mix.far) {
   const Place place{nodes_of_ranks(communicator),
                     nodes_of_ranks(communicator, options.hooks.ranks_per_node),
                     communicator.rank()};
   const Links links = count_links(communicator, neighbours, options.hooks.ranks_per_node);
-  const bool left_is_near = place.is_near(neighbours.left);
-  const bool right_is_near = place.is_near(neighbours.right);
+  // Both know all links by the same numbers, and miss those of the other.
+  Neighbours near = neighbours, far = neighbours;
+  for (int link = 0; link < neighbours.num_links(); ++link) {
+    const int other = neighbours.rank(link);
+    Link& missing = (place.is_near(other) ? far : near).links[static_cast<std::size_t>(link)];
+    if (place.is_near(other))
+      near.links[static_cast<std::size_t>(link)].rank = place.on_node(other);
+    missing.rank = -1;
+  }
   if (links.on_node > 0) {
-    const Neighbours near{left_is_near ? place.on_node(neighbours.left) : -1,
-                          right_is_near ? place.on_node(neighbours.right) : -1};
     // The real node: Open MPI takes windows of two communicators on one node for the same.
     const Communicator node = communicator.split(static_cast<int>(place.node()));
     parts_[0] = made_on_all(communicator, [&] { return make(mix.near, node, near, options); });
   }
-  if (links.on_node < links.all || links.all == 0) {
-    const Neighbours far{left_is_near ? -1 : neighbours.left,
-                         right_is_near ? -1 : neighbours.right};
+  if (links.on_node < links.all || links.all == 0)
     parts_[1] = make(mix.far, communicator, far, options);
-  }
-  for (const Side side : kSides) {
-    const bool is_near = place.is_near(neighbours.rank(side));
-    Exchange* mine = parts_[is_near ? 0 : 1].get();
-    of_side_[index_of(side)] = mine != nullptr ? mine : parts_[0].get();
+  for (int link = 0; link < neighbours.num_links(); ++link) {
+    Exchange* mine = parts_[place.is_near(neighbours.rank(link)) ? 0 : 1].get();
+    of_link_.push_back(mine != nullptr ? mine : parts_[0].get());
   }
 }
 
@@ -82,14 +84,14 @@ void MixedExchange::reserve(std::size_t bytes) {
   }
 }
 
-void MixedExchange::begin_bulk(std::span<const std::byte> to_left,
-                               std::span<const std::byte> to_right) {
+void MixedExchange::begin_bulk(std::span<const std::span<const std::byte>> outgoing) {
   for (const auto& part : parts_) {
     if (!part) continue;
-    const auto share = [&](Side side, std::span<const std::byte> bytes) {
-      return &of(side) == part.get() ? bytes : std::span<const std::byte>{};
-    };
-    part->begin_bulk(share(Side::Left, to_left), share(Side::Right, to_right));
+    std::vector<std::span<const std::byte>> share(of_link_.size());
+    for (std::size_t link = 0; link < of_link_.size(); ++link) {
+      if (of_link_[link] == part.get()) share[link] = outgoing[link];
+    }
+    part->begin_bulk(share);
   }
 }
 

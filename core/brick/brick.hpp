@@ -13,6 +13,8 @@
 #include <barchan/core/links/walls.hpp>
 #include <barchan/core/particles/particle_store.hpp>
 #include <barchan/core/search/band.hpp>
+#include <barchan/core/search/cell_box.hpp>
+#include <barchan/core/search/cell_index.hpp>
 #include <barchan/core/search/pair_list.hpp>
 
 namespace barchan {
@@ -24,30 +26,54 @@ struct RowBlock : PairBlock {
   bool has_extras = false;      ///< bonds, walls or external forces among them
 };
 
-/// What one thread works on: slabs [slab_begin, slab_end) of the grid with their particles, what is
-/// between these, and copies of the slabs beside them.
+/// A tie to one brick beside: which cells are ghosts here, and which rows are ghosts there.
+template <int Dim>
+struct BrickLink {
+  Side side = Side::Left;  ///< the band that its ghosts are of
+  CellBox<Dim> beyond;     ///< where the other brick lies
+  CellRegion<Dim> sends;   ///< own cells that the other one needs
+  CellRegion<Dim> takes;   ///< the other one's cells that this one needs
+  std::vector<Rows> runs;  ///< owned rows of `sends`, by cells
+  std::int32_t num_sent = 0;
+  Rows ghosts;
+  double travel = 0.0;     ///< bound of how far ghosts have come since the last rebuild [m]
+  bool has_quick = false;  ///< a ghost moved farther than World::quick_travel in the last step
+};
+
+/// Which rows are complete when.
+enum class CutForm {
+  Strips,  ///< cuts along one axis: a slab beside each cut, complete when that cut is done
+  Bricks   ///< cuts along any axes: all rows beside cuts, the rim, complete together
+};
+
+/// What one thread works on: a box of cells of the grid with their particles, what is between
+/// these, and copies of the cells around it.
 ///
-///               slab_begin                       slab_end
-///      ghosts  |  band  |       interior        |  band  |  ghosts
-///              |<------------ owned ------------------->|
+///      strips     ghosts |  band  |       interior        |  band  | ghosts      rows as drawn
+///
+///      bricks     ghosts of all links around | rim | interior              the rim comes first
 ///
 /// Plain data. What works on it stands beside it: Rebuild, Lists and Step (lane.hpp), and functions
 /// over bricks that they do not change: measure.hpp, diagnose.hpp, checkpoint.hpp.
 template <int Dim>
 struct Brick {
   World<Dim>* world = nullptr;
-  int slab_begin = 0, slab_end = 0;
+  CutForm form = CutForm::Strips;
+  CellBox<Dim> box;
 
   // particles
   ParticleStore<Dim> store;
-  CellIndex cells;  ///< of owned rows
+  CellIndex<Dim> cells;      ///< of owned rows and ghosts
+  std::int32_t num_rim = 0;  ///< rows of the rim; bricks
+  Rows interior;             ///< complete when the chunks are done
 
   // candidates
   PairList pairs;                       ///< of two owned particles
   std::vector<std::int64_t> row_begin;  ///< of every owned row its first place in `pairs`
   std::vector<RowBlock> blocks;         ///< of `pairs`
   std::vector<int> chunks{0};           ///< first block of each chunk, and the end
-  std::array<Band, 2> bands;            ///< what is across the cuts, left and right
+  std::array<Band, 2> bands;            ///< what is across the cuts, by side
+  std::vector<BrickLink<Dim>> links;    ///< those of the left band first
   bool prefetches = false;
   double skin = 0.0;    ///< that the lists have [m]
   double travel = 0.0;  ///< bound of how far owned rows have come since the lists were made [m]
@@ -71,6 +97,13 @@ struct Brick {
   explicit Brick(World<Dim>& of) : world(&of) {}
   Band& band(Side side) { return bands[index_of(side)]; }
   [[nodiscard]] const Band& band(Side side) const { return bands[index_of(side)]; }
+  /// Ties it to one more brick, the left ones first. Before the brick owns anything.
+  void add_link(Side side) {
+    links.emplace_back().side = side;
+    band(side).exists = true;
+  }
+  /// Strips take the slab beside each cut, also where two in a ring meet at both ends.
+  void place(const Placement<Dim>& at);
   [[nodiscard]] int num_chunks() const { return static_cast<int>(chunks.size()) - 1; }
   [[nodiscard]] std::int64_t num_pairs() const {
     std::int64_t n = pairs.size();
@@ -91,5 +124,8 @@ struct Brick {
     for (const PairBlock& block : band(Side::Left).blocks) f(band(Side::Left).across, block);
   }
 };
+
+extern template struct Brick<2>;
+extern template struct Brick<3>;
 
 }  // namespace barchan

@@ -170,19 +170,19 @@ void save(const Brick<Dim>& brick, CheckpointShare& share) {
 }
 
 template <int Dim>
-void restore(Brick<Dim>& brick, Rebuild<Dim>& rebuild, int slab_begin, int slab_end,
+void restore(Brick<Dim>& brick, Rebuild<Dim>& rebuild, const Placement<Dim>& at,
              const CheckpointShare& share) {
   const auto n = static_cast<std::int32_t>(share.ids.size());
-  rebuild.own(slab_begin, slab_end, n);
+  rebuild.own(at, n);
   ParticleStore<Dim>& store = brick.store;
   for (std::int32_t i = 0; i < n; ++i) RowRecord<Dim>().put(store, i);
   restore_particles(share, store);
   RowOfId row_of;
   for (std::int32_t i = 0; i < n; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    store.key[at] = brick.world->grid.key(store.x(i));
-    if (!row_of.emplace(store.id[at], i).second) {
-      throw RunError("the checkpoint has particle " + std::to_string(store.id[at]) +
+    const auto row = static_cast<std::size_t>(i);
+    store.key[row] = brick.world->grid.key(store.x(i));
+    if (!row_of.emplace(store.id[row], i).second) {
+      throw RunError("the checkpoint has particle " + std::to_string(store.id[row]) +
                      " twice: take another one");
     }
   }
@@ -195,7 +195,7 @@ void restore(Brick<Dim>& brick, Rebuild<Dim>& rebuild, int slab_begin, int slab_
 
 template void save(const Brick<2>&, CheckpointShare&);
 template void save(const Brick<3>&, CheckpointShare&);
-template void restore(Brick<2>&, Rebuild<2>&, int, int, const CheckpointShare&);
-template void restore(Brick<3>&, Rebuild<3>&, int, int, const CheckpointShare&);
+template void restore(Brick<2>&, Rebuild<2>&, const Placement<2>&, const CheckpointShare&);
+template void restore(Brick<3>&, Rebuild<3>&, const Placement<3>&, const CheckpointShare&);
 
 }  // namespace barchan

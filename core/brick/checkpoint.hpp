@@ -16,9 +16,9 @@ void save(const Brick<Dim>& brick, CheckpointShare& share);
 
 /// Instead of Rebuild::seed: owns the particles of a checked share, and queues the history of
 /// contacts, walls and bonds that have an end among them. Rebuild::order() … follow.
-/// @pre they lie in the slabs. Errors: RunError for an id that comes twice
+/// @pre they lie in the box. Errors: RunError for an id that comes twice
 template <int Dim>
-void restore(Brick<Dim>& brick, Rebuild<Dim>& rebuild, int slab_begin, int slab_end,
+void restore(Brick<Dim>& brick, Rebuild<Dim>& rebuild, const Placement<Dim>& at,
              const CheckpointShare& share);
 
 }  // namespace barchan

@@ -23,35 +23,36 @@ void for_each_halo_field(Store& store, std::int32_t row, F&& f) {
 }  // namespace
 
 template <int Dim>
-std::size_t halo_bytes(const Brick<Dim>& brick, Side side) {
-  const Rows rows = brick.band(side).rows;
-  return static_cast<std::size_t>(rows.end - rows.begin) * halo_record_bytes<Dim>();
+std::size_t halo_bytes(const Brick<Dim>& brick, int link) {
+  return static_cast<std::size_t>(brick.links[static_cast<std::size_t>(link)].num_sent) *
+         halo_record_bytes<Dim>();
 }
 
 template <int Dim>
-void pack_halo(const Brick<Dim>& brick, Side side, std::span<std::byte> message) {
+void pack_halo(const Brick<Dim>& brick, int link, std::span<std::byte> message) {
   std::byte* to = message.data();
-  const Rows rows = brick.band(side).rows;
-  for (std::int32_t i = rows.begin; i < rows.end; ++i) {
-    for_each_halo_field<Dim>(brick.store, i, [&](const void* from, std::size_t bytes) {
-      std::memcpy(to, from, bytes);
-      to += bytes;
-    });
+  for (const Rows rows : brick.links[static_cast<std::size_t>(link)].runs) {
+    for (std::int32_t i = rows.begin; i < rows.end; ++i) {
+      for_each_halo_field<Dim>(brick.store, i, [&](const void* from, std::size_t bytes) {
+        std::memcpy(to, from, bytes);
+        to += bytes;
+      });
+    }
   }
 }
 
 template <int Dim>
-void unpack_halo(Brick<Dim>& brick, Side side, std::span<const std::byte> message) {
+void unpack_halo(Brick<Dim>& brick, int link, std::span<const std::byte> message) {
   ParticleStore<Dim>& store = brick.store;
-  const Rows ghosts = store.ghosts(side);
-  const std::int32_t n = ghosts.end - ghosts.begin;
+  BrickLink<Dim>& mine = brick.links[static_cast<std::size_t>(link)];
+  const std::int32_t n = mine.ghosts.end - mine.ghosts.begin;
   if (message.size() != static_cast<std::size_t>(n) * halo_record_bytes<Dim>()) {
     throw RunError("a halo message has " + std::to_string(message.size()) + " bytes for " +
                    std::to_string(n) + " ghosts");
   }
   const std::byte* from = message.data();
   double top2 = 0.0;
-  for (std::int32_t g = ghosts.begin; g < ghosts.end; ++g) {
+  for (std::int32_t g = mine.ghosts.begin; g < mine.ghosts.end; ++g) {
     for_each_halo_field<Dim>(store, g, [&](void* to, std::size_t bytes) {
       std::memcpy(to, from, bytes);
       from += bytes;
@@ -59,10 +60,14 @@ void unpack_halo(Brick<Dim>& brick, Side side, std::span<const std::byte> messag
     const double* v = store.v(g);
     top2 = std::max(top2, v[0] * v[0] + v[1] * v[1] + (Dim == 3 ? v[2] * v[2] : 0.0));
   }
-  Band& band = brick.band(side);
   const double travel = std::sqrt(top2) * brick.world->dt;
-  band.travel += travel;
-  band.has_quick = travel > brick.world->quick_travel;
+  mine.travel += travel;
+  mine.has_quick = travel > brick.world->quick_travel;
+  Band& band = brick.band(mine.side);
+  band.travel = std::max(band.travel, mine.travel);
+  band.has_quick = std::ranges::any_of(brick.links, [&](const BrickLink<Dim>& other) {
+    return other.side == mine.side && other.has_quick;
+  });
 }
 
 template <int Dim>
@@ -102,12 +107,12 @@ void add_results(Brick<Dim>& brick, std::span<const double> results) {
   brick.bonds.import_group(BondSet<Dim>::Right, brick.store, f);
 }
 
-template std::size_t halo_bytes(const Brick<2>&, Side);
-template std::size_t halo_bytes(const Brick<3>&, Side);
-template void pack_halo(const Brick<2>&, Side, std::span<std::byte>);
-template void pack_halo(const Brick<3>&, Side, std::span<std::byte>);
-template void unpack_halo(Brick<2>&, Side, std::span<const std::byte>);
-template void unpack_halo(Brick<3>&, Side, std::span<const std::byte>);
+template std::size_t halo_bytes(const Brick<2>&, int);
+template std::size_t halo_bytes(const Brick<3>&, int);
+template void pack_halo(const Brick<2>&, int, std::span<std::byte>);
+template void pack_halo(const Brick<3>&, int, std::span<std::byte>);
+template void unpack_halo(Brick<2>&, int, std::span<const std::byte>);
+template void unpack_halo(Brick<3>&, int, std::span<const std::byte>);
 template std::size_t results_bytes(const Brick<2>&, Side);
 template std::size_t results_bytes(const Brick<3>&, Side);
 template void take_results(Brick<2>&, std::vector<double>&);

@@ -10,14 +10,14 @@
 
 namespace barchan {
 
-/// Of a band's rows, for the brick beside it; the same until the next rebuild.
+/// Of the rows that are ghosts beyond a link; the same until the next rebuild.
 template <int Dim>
-[[nodiscard]] std::size_t halo_bytes(const Brick<Dim>& brick, Side side);
+[[nodiscard]] std::size_t halo_bytes(const Brick<Dim>& brick, int link);
 template <int Dim>
-void pack_halo(const Brick<Dim>& brick, Side side, std::span<std::byte> message);
+void pack_halo(const Brick<Dim>& brick, int link, std::span<std::byte> message);
 /// Errors: RunError: another length than that of the ghosts
 template <int Dim>
-void unpack_halo(Brick<Dim>& brick, Side side, std::span<const std::byte> message);
+void unpack_halo(Brick<Dim>& brick, int link, std::span<const std::byte> message);
 
 // The published exchange: the band at a right cut goes to the right neighbour, which computes the
 // forces of its contacts and sends them back, summed for every particle of the band: sums are

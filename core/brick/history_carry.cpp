@@ -18,7 +18,7 @@ void HistoryCarry<Dim>::clear() {
 
 // Packed histories are taken from where they are: these lists have served.
 template <int Dim>
-void HistoryCarry<Dim>::collect(const Leavers& leavers, std::array<Migration<Dim>, 2>& out) {
+void HistoryCarry<Dim>::collect(const Leavers& leavers, std::vector<Migration<Dim>>& out) {
   clear();
   const Way way{leavers, out};
   for (Migration<Dim>& m : out) m.contacts.length = kept_.length;
@@ -168,23 +168,17 @@ void HistoryCarry<Dim>::put_back_walls(std::span<const std::int32_t> new_row) {
 template <int Dim>
 std::int32_t HistoryCarry<Dim>::find_near(std::int32_t row, std::int64_t id) const {
   const ParticleStore<Dim>& store = brick_.store;
-  const std::int64_t key = store.key[static_cast<std::size_t>(row)];
   Neighbourhood<Dim> around;
-  const auto look = [&](const CellIndex& cells) {
-    around.collect(brick_.world->grid, cells, key, -1, 1, -1);
-    for (int q = 0; q < around.count; ++q) {
-      const Rows rows = around.ranges[static_cast<std::size_t>(q)];
-      for (std::int32_t j = rows.begin; j < rows.end; ++j) {
-        if (store.id[static_cast<std::size_t>(j)] == id) return j;
-      }
+  around.collect(brick_.cells,
+                 cell_of_key(brick_.world->grid, store.key[static_cast<std::size_t>(row)]),
+                 {0, store.size()});
+  for (int q = 0; q < around.count; ++q) {
+    const Rows rows = around.ranges[static_cast<std::size_t>(q)];
+    for (std::int32_t j = rows.begin; j < rows.end; ++j) {
+      if (store.id[static_cast<std::size_t>(j)] == id) return j;
     }
-    return std::int32_t{-1};
-  };
-  std::int32_t found = look(brick_.cells);
-  for (const Band& band : brick_.bands) {
-    if (found < 0 && band.exists) found = look(band.ghost_cells);
   }
-  return found;
+  return -1;
 }
 
 /// @return whether they are candidates: if not, they are out of touch

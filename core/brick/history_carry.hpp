@@ -17,18 +17,17 @@ namespace barchan {
 
 /// Where the rows of a brick go in a rebuild; by row.
 struct Leavers {
-  /// Gone: out of the domain
-  enum Way : std::int8_t { Stays = 0, ToLeft = 1, ToRight = 2, Gone = 3 };
+  /// The number of a link, or one of these. Gone: out of the domain
+  enum Way : std::int8_t { Stays = -1, Gone = -2 };
   std::vector<std::int8_t> way;
-  std::vector<std::int32_t> number;   ///< of every row that leaves, its place among the leavers
+  std::vector<std::int32_t>
+      number;  ///< of every row that leaves, its place among those of its link
   std::vector<std::int64_t> removed;  ///< ids that go, of any brick; ascending
 
   [[nodiscard]] std::int8_t of(std::int32_t row) const {
     return way[static_cast<std::size_t>(row)];
   }
-  [[nodiscard]] bool leaves(std::int32_t row) const {
-    return of(row) == ToLeft || of(row) == ToRight;
-  }
+  [[nodiscard]] bool leaves(std::int32_t row) const { return of(row) >= 0; }
   [[nodiscard]] bool is_removed(std::int64_t id) const;
 };
 
@@ -41,7 +40,7 @@ class HistoryCarry {
 
   // ---- out of old lists
   /// Takes all histories; those of leavers go to `out`.
-  void collect(const Leavers& leavers, std::array<Migration<Dim>, 2>& out);
+  void collect(const Leavers& leavers, std::vector<Migration<Dim>>& out);
   // From elsewhere, by source rows
   /// @return its history, zero, as seen from the row
   double* add_contact(std::int32_t row, std::int64_t partner) {
@@ -68,9 +67,9 @@ class HistoryCarry {
   /// Out of old lists.
   struct Way {
     const Leavers& leavers;
-    std::array<Migration<Dim>, 2>& out;
+    std::vector<Migration<Dim>>& out;  ///< by link
     [[nodiscard]] Migration<Dim>& message_of(std::int32_t row) const {
-      return out[static_cast<std::size_t>(leavers.of(row) - 1)];
+      return out[static_cast<std::size_t>(leavers.of(row))];
     }
     [[nodiscard]] std::int32_t number_of(std::int32_t row) const {
       return leavers.number[static_cast<std::size_t>(row)];

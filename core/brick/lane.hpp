@@ -13,8 +13,7 @@ template <int Dim>
 [[nodiscard]] std::size_t bytes_of(const Brick<Dim>& brick) {
   std::size_t total = brick.store.bytes() + brick.pairs.bytes() + brick.bonds.bytes() +
                       brick.walls.bytes() + sizeof(std::int64_t) * brick.row_begin.capacity() +
-                      sizeof(std::int32_t) * brick.cells.start.capacity() +
-                      sizeof(RowBlock) * brick.blocks.capacity();
+                      brick.cells.bytes() + sizeof(RowBlock) * brick.blocks.capacity();
   for (const Band& band : brick.bands) total += band.across.bytes() + band.planes.bytes();
   return total;
 }

@@ -102,15 +102,11 @@ void Lists<Dim>::find_owned() {
   const World<Dim>& world = *brick_.world;
   const ParticleStore<Dim>& store = brick_.store;
   const std::int32_t n = store.num_owned;
-  const std::int64_t slab_size = world.grid.slab_size();
-  Band &left = brick_.band(Side::Left), &right = brick_.band(Side::Right);
-  left.rows = {0, left.exists ? brick_.cells.first_row(brick_.slab_begin + 1, slab_size) : 0};
-  right.rows = {right.exists ? brick_.cells.first_row(brick_.slab_end - 1, slab_size) : n, n};
   planes_.write(world.grid, store, {0, n});
   resize_with_room(brick_.row_begin, static_cast<std::size_t>(n));
   brick_.pairs.clear();
   ContactSearch<Dim>(world.grid, store, planes_, rule())
-      .owned(brick_.cells, {0, n}, brick_.pairs, brick_.row_begin);
+      .owned(brick_.cells, brick_.pairs, brick_.row_begin);
   finish(brick_.pairs, world, store.waste());
   cut_blocks();
 }
@@ -122,8 +118,7 @@ void Lists<Dim>::cut_blocks() {
   blocks.clear();
   brick_.travel = 0.0;
   // Rows before the next pair's first row are complete, but for those of bands.
-  const std::int32_t first = brick_.band(Side::Left).rows.end,
-                     last = std::max(first, brick_.band(Side::Right).rows.begin);
+  const auto [first, last] = brick_.interior;
   for (std::int64_t k = 0; k < pairs.size(); k += kBlockPairs) {
     RowBlock& block = blocks.emplace_back();
     block.begin = k, block.end = std::min(k + kBlockPairs, pairs.size());
@@ -147,7 +142,7 @@ void Lists<Dim>::cut_chunks(std::int64_t chunk_pairs) {
       pairs = 0;
     }
   }
-  std::int32_t row = brick_.band(Side::Left).rows.end;
+  std::int32_t row = brick_.interior.begin;
   const auto walls = brick_.walls.list();
   for (RowBlock& block : brick_.blocks) {
     const auto wall =
@@ -164,19 +159,11 @@ void Lists<Dim>::find_across(Side side) {
   Band& band = brick_.band(side);
   if (!band.exists) return;
   const World<Dim>& world = *brick_.world;
-  const CellIndex& cells = brick_.cells;
+  const Rows ghosts = brick_.store.ghosts(side);
   band.across.clear();
-  const std::int64_t slab_size = world.grid.slab_size();
-  CellIndex own;  // the band's slab alone
-  own.slab_begin = side == Side::Left ? brick_.slab_begin : brick_.slab_end - 1;
-  own.slab_end = own.slab_begin + 1;
-  own.first_key = own.slab_begin * slab_size;
-  const auto from = cells.start.begin() + (own.slab_begin - brick_.slab_begin) * slab_size;
-  own.start.assign(from, from + slab_size + 1);
-  band.planes.write(world.grid, brick_.store,
-                    {band.ghost_cells.start.front(), band.ghost_cells.start.back()});
+  band.planes.write(world.grid, brick_.store, ghosts);
   ContactSearch<Dim>(world.grid, brick_.store, band.planes, rule())
-      .across(own, band.ghost_cells, side == Side::Left ? -1 : 1, band.across);
+      .across(brick_.cells, band.near, ghosts, band.across);
   finish(band.across, world, brick_.store.waste());
   band.travel = 0.0;
   band.blocks = blocks_of(band.across);

@@ -11,7 +11,7 @@ namespace barchan {
 namespace {
 
 [[noreturn]] void refuse(const std::string& what) {
-  throw RunError("a message between strips is damaged: " + what);
+  throw RunError("a message between bricks is damaged: " + what);
 }
 
 bool is_below(std::int64_t number, std::size_t end) {
@@ -78,7 +78,7 @@ void encode(const Migration<Dim>& migration, std::vector<std::byte>& message) {
 
 template <int Dim>
 Migration<Dim> decode_migration(std::span<const std::byte> message, const World<Dim>& world,
-                                int slab_begin, int slab_end) {
+                                const CellBox<Dim>& box) {
   Migration<Dim> m;
   ByteReader in(message);
   m.particles = in.take_counted<RowRecord<Dim>>();
@@ -90,10 +90,8 @@ Migration<Dim> decode_migration(std::span<const std::byte> message, const World<
   in.finish();
   for (const auto& p : m.particles) {
     check(p, world);
-    const std::int64_t slab = key_of(p) / world.grid.slab_size();
-    if (slab >= slab_begin && slab < slab_end) continue;
-    throw RunError("particle " + std::to_string(id_of(p)) +
-                   " jumped over a whole strip: the time step is too long");
+    if (!box.contains(cell_of_key(world.grid, key_of(p))))
+      refuse("particle " + std::to_string(id_of(p)) + " belongs to another brick");
   }
   check_links(m, world);
   return m;
@@ -101,24 +99,28 @@ Migration<Dim> decode_migration(std::span<const std::byte> message, const World<
 
 template <int Dim>
 std::vector<RowRecord<Dim>> decode_ghosts(std::span<const std::byte> message,
-                                          const World<Dim>& world, int slab) {
+                                          const World<Dim>& world, const CellRegion<Dim>& cells) {
   ByteReader in(message);
   auto ghosts = in.take_counted<RowRecord<Dim>>();
   in.finish();
   for (std::size_t g = 0; g < ghosts.size(); ++g) {
     check(ghosts[g], world);
     const bool is_next = g == 0 || key_of(ghosts[g - 1]) <= key_of(ghosts[g]);
-    if (!is_next || key_of(ghosts[g]) / world.grid.slab_size() != slab)
-      refuse("ghosts out of order or of another slab");
+    if (!is_next || !cells.contains(cell_of_key(world.grid, key_of(ghosts[g]))))
+      refuse("ghosts out of order or of other cells");
   }
   return ghosts;
 }
 
 template void encode(const Migration<2>&, std::vector<std::byte>&);
 template void encode(const Migration<3>&, std::vector<std::byte>&);
-template Migration<2> decode_migration(std::span<const std::byte>, const World<2>&, int, int);
-template Migration<3> decode_migration(std::span<const std::byte>, const World<3>&, int, int);
-template std::vector<RowRecord<2>> decode_ghosts(std::span<const std::byte>, const World<2>&, int);
-template std::vector<RowRecord<3>> decode_ghosts(std::span<const std::byte>, const World<3>&, int);
+template Migration<2> decode_migration(std::span<const std::byte>, const World<2>&,
+                                       const CellBox<2>&);
+template Migration<3> decode_migration(std::span<const std::byte>, const World<3>&,
+                                       const CellBox<3>&);
+template std::vector<RowRecord<2>> decode_ghosts(std::span<const std::byte>, const World<2>&,
+                                                 const CellRegion<2>&);
+template std::vector<RowRecord<3>> decode_ghosts(std::span<const std::byte>, const World<3>&,
+                                                 const CellRegion<3>&);
 
 }  // namespace barchan

@@ -11,6 +11,7 @@
 #include <barchan/core/links/wall_shape.hpp>
 #include <barchan/core/particles/layout.hpp>
 #include <barchan/core/particles/row_record.hpp>
+#include <barchan/core/search/cell_box.hpp>
 
 // What bricks send each other at a rebuild, as bytes and back. Bytes that came in are held against
 // the receiver's world before anyone works on them: any bytes are safe, whoever sent them.
@@ -39,7 +40,7 @@ struct BondRecord {
   std::uint8_t is_current;  ///< the sender computes this bond; its state replaces the receiver's
 };
 
-/// Who leaves a lane across one cut, with history and bonds. Contacts and walls name a migrant by
+/// Who leaves a brick over one link, with history and bonds. Contacts and walls name a migrant by
 /// its place in `particles`.
 template <int Dim>
 struct Migration {
@@ -53,16 +54,15 @@ struct Migration {
 template <int Dim>
 void encode(const Migration<Dim>& migration, std::vector<std::byte>& message);
 
-/// Arrivals in slabs [slab_begin, slab_end). Errors: RunError: damaged, or a particle that belongs
-/// to none of these slabs
+/// Arrivals in a box of cells. Errors: RunError: damaged, or a particle that belongs elsewhere
 template <int Dim>
 [[nodiscard]] Migration<Dim> decode_migration(std::span<const std::byte> message,
-                                              const World<Dim>& world, int slab_begin,
-                                              int slab_end);
+                                              const World<Dim>& world, const CellBox<Dim>& box);
 
-/// Ghosts of one slab, by cells. Errors: RunError.
+/// Ghosts of these cells, by cells. Errors: RunError.
 template <int Dim>
 [[nodiscard]] std::vector<RowRecord<Dim>> decode_ghosts(std::span<const std::byte> message,
-                                                        const World<Dim>& world, int slab);
+                                                        const World<Dim>& world,
+                                                        const CellRegion<Dim>& cells);
 
 }  // namespace barchan

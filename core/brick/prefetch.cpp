@@ -78,18 +78,20 @@ void plan_prefetch(Brick<Dim>& brick) {
   if (!brick.prefetches) return;
   const std::int64_t line = world.grid.cells(Dim - 1);
   const std::array<std::int64_t, 2> reach{world.grid.slab_size() + line + 1, line + 1};
-  const auto num_cells = static_cast<std::int64_t>(brick.cells.start.size()) - 1;
-  std::array<std::int32_t, 2> met{};
+  // Of a rim, whose rows come first, nothing is prefetched.
+  const std::int32_t n = brick.store.num_owned, rim = brick.num_rim;
+  const auto keys = brick.store.key.begin();
+  std::array<std::int32_t, 2> met{rim, rim};
   RowBlock* before = nullptr;
   for (RowBlock& block : brick.blocks) {
     if (block.begin == block.end) continue;
     const std::int32_t last =
-        std::min(brick.pairs.i[static_cast<std::size_t>(block.end - 1)], brick.store.num_owned - 1);
-    const std::int64_t cell =
-        brick.store.key[static_cast<std::size_t>(last)] - brick.cells.first_key;
+        std::min(brick.pairs.i[static_cast<std::size_t>(block.end - 1)], n - 1);
+    if (last < rim) continue;
+    const std::int64_t key = brick.store.key[static_cast<std::size_t>(last)];
     for (std::size_t edge = 0; edge < 2; ++edge) {
-      const std::int64_t end = std::min(cell + reach[edge] + 1, num_cells);
-      const std::int32_t to_come = brick.cells.start[static_cast<std::size_t>(end)];
+      const auto to_come = static_cast<std::int32_t>(
+          std::upper_bound(keys + met[edge], keys + n, key + reach[edge]) - keys);
       if (before != nullptr) before->to_come[edge] = {met[edge], to_come};
       met[edge] = to_come;
     }

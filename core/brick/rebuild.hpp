@@ -24,33 +24,32 @@ class Rebuild {
  public:
   Rebuild(Brick<Dim>& brick, Lists<Dim>& lists) : brick_(brick), lists_(lists), carry_(brick) {}
 
-  /// Owns these particles and bonds. @pre they lie in the slabs
-  void seed(int slab_begin, int slab_end, std::span<const ParticleData> particles,
+  /// Owns these particles and bonds. @pre they lie in the box
+  void seed(const Placement<Dim>& at, std::span<const ParticleData> particles,
             std::span<const BondData> bonds, std::span<const double> bond_lengths,
             std::span<const char> is_bonded);
   /// Owns so many rows, which the caller fills.
-  void own(int slab_begin, int slab_end, std::int32_t count);
+  void own(const Placement<Dim>& at, std::int32_t count);
 
   /// These particles, of any brick, go in the next rebuild, with their contacts and bonds.
   /// @param ids  ascending. @return how many of those this brick counts
   LinkCounts remove(std::span<const std::int64_t> ids);
 
-  /// Takes slabs [slab_begin, slab_end) from now on; writes who leaves, with history and bonds.
-  void begin(int slab_begin, int slab_end, std::vector<std::byte>& to_left,
-             std::vector<std::byte>& to_right);
+  /// Lies there from now on; writes who leaves, with history and bonds.
+  /// @param out  by link; replaced. Errors: RunError: a particle is farther off than any link leads
+  void begin(const Placement<Dim>& at, std::span<std::vector<std::byte>> out);
   void absorb(std::span<const std::byte> message);  ///< arrivals. Errors: RunError: damaged
-  /// Those of a caller that lie in the slabs; between begin and order.
+  /// Those of a caller that lie in the box; between begin and order.
   void take_in(std::span<const ParticleData> newcomers);
   void order();  ///< by cells
-  void pack_ghosts(Side side, std::vector<std::byte>& message) const;
-  /// Lists pairs with them, too. Errors: RunError: damaged
-  void take_ghosts(std::span<const std::byte> left, std::span<const std::byte> right);
+  void pack_ghosts(int link, std::vector<std::byte>& message) const;
+  /// Lists pairs with them, too. @param messages  by link. Errors: RunError: damaged
+  void take_ghosts(std::span<const std::span<const std::byte>> messages);
   void restore_history();
 
   [[nodiscard]] std::int64_t num_leaving() const {
-    return std::count_if(leavers_.way.begin(), leavers_.way.end(), [](auto way) {
-      return way == Leavers::ToLeft || way == Leavers::ToRight;
-    });
+    return std::count_if(leavers_.way.begin(), leavers_.way.end(),
+                         [](auto way) { return way >= 0; });
   }
   HistoryCarry<Dim>& carry() { return carry_; }
   [[nodiscard]] const HistoryCarry<Dim>& carry() const { return carry_; }
@@ -59,12 +58,15 @@ class Rebuild {
   }
 
  private:
-  [[nodiscard]] Leavers::Way way_of(std::int64_t key, std::int64_t key_before) const;
-  void find_leavers(std::array<Migration<Dim>, 2>& out);
-  void collect_bonds(std::array<Migration<Dim>, 2>& out);
+  [[nodiscard]] std::int8_t way_of(const CellAt<Dim>& at, std::int64_t id) const;
+  void find_leavers(std::vector<Migration<Dim>>& out);
+  void collect_bonds(std::vector<Migration<Dim>>& out);
   [[nodiscard]] bool computes_bond(std::int32_t bond) const;
-  [[nodiscard]] std::pair<bool, bool> bond_leaves(std::int32_t bond) const;
+  /// By cell of the box: its place among the cells, in the order of rows.
+  std::vector<std::int32_t> places_of_cells();
   std::vector<std::int32_t> sources();
+  void place_bands();
+  void find_runs();
 
   Brick<Dim>& brick_;
   Lists<Dim>& lists_;
@@ -72,6 +74,7 @@ class Rebuild {
   // between begin and restore_history
   Leavers leavers_;                    ///< by source row: this brick's, then arrivals
   std::vector<std::int32_t> new_row_;  ///< of every source row; -1: left
+  std::int32_t num_rim_cells_ = 0;
 };
 
 extern template class Rebuild<2>;

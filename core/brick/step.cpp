@@ -68,7 +68,7 @@ void Step<Dim>::begin(const StepFrame& frame) {
   looks_ = std::exchange(brick_.has_quick, false) && frame_.has_moved(world.dt);
   if (world.search == ContactSearchKind::AllPairs) lists_.search_owned_again();
   if (looks_) PassageWatch<Dim>(world, brick_.store, brick_.passage).look_at(brick_.pairs);
-  rows_done_ = brick_.band(Side::Left).rows.end;
+  rows_done_ = brick_.interior.begin;
   brick_.wall_sums.resize(world.walls.size());
   if (++num_steps_ % kCarryEvery == 0) {
     for (WallSums& sums : brick_.wall_sums) sums.work.carry();
@@ -180,7 +180,7 @@ void Step<Dim>::finish_band(Side side) {
     compute_bonds(side == Side::Left ? BondSet<Dim>::Left : BondSet<Dim>::Right);
   for (PairBlock& block : band.blocks)
     world.kernels.pairs(job(band.across, block, 0.5 * (brick_.travel + band.travel)));
-  finish_rows(band.rows, true);
+  if (band.rows.begin < band.rows.end) finish_rows(band.rows, true);
 }
 
 template <int Dim>
@@ -221,10 +221,12 @@ template <int Dim>
 void find_quick(Brick<Dim>& brick) {
   brick.has_quick = false;
   judge_speeds(brick, {0, brick.store.num_owned});
-  for (const Side side : kSides) {
-    brick.band(side).has_quick =
-        farthest_travel(brick.store, brick.world->dt, brick.store.ghosts(side)) >
-        brick.world->quick_travel;
+  for (Band& band : brick.bands) band.has_quick = false;
+  for (BrickLink<Dim>& link : brick.links) {
+    link.has_quick =
+        farthest_travel(brick.store, brick.world->dt, link.ghosts) > brick.world->quick_travel;
+    Band& band = brick.band(link.side);
+    band.has_quick = band.has_quick || link.has_quick;
   }
 }
 

@@ -8,6 +8,7 @@
 #include <barchan/core/base/nearest.hpp>
 #include <barchan/core/deck/boxes.hpp>
 #include <barchan/core/deck/readers.hpp>
+#include <barchan/core/deck/values.hpp>
 
 namespace barchan::deck {
 
@@ -45,6 +46,30 @@ void read_outside(const TableReader& table, bool has_periodic, Domain& domain) {
     domain.periodic[static_cast<std::size_t>(axis)] = true;
 }
 
+CutWish read_cuts(const TableReader& table) {
+  CutWish wish;
+  const Node* value = table.value("cuts");
+  if (value == nullptr) return wish;
+  wish.place = value->place();
+  if (value->kind == Node::Kind::String && value->text == "auto") return wish;
+  wish.kind = CutWish::Kind::Strips;
+  if (value->kind == Node::Kind::String && value->text == "strips") return wish;
+  wish.kind = CutWish::Kind::Bricks;
+  const auto num_axes = static_cast<std::size_t>(table.dimension());
+  const std::string remedy =
+      fmt::format("write \"auto\", \"strips\" or {}", num_axes == 2 ? "[2, 2]" : "[2, 2, 1]");
+  if (value->kind != Node::Kind::Array || value->items.size() != num_axes)
+    table.fail("cuts", fmt::format("cuts: expected a word or {} integers", num_axes), remedy);
+  for (std::size_t axis = 0; axis < num_axes; ++axis) {
+    constexpr std::int64_t kMost = 1 << 20;
+    const std::int64_t bricks = whole_number(value->items[axis], "cuts");
+    if (bricks < 1 || bricks > kMost)
+      table.fail("cuts", fmt::format("cuts: {} bricks along {}", bricks, kAxisNames[axis]), remedy);
+    wish.bricks[axis] = static_cast<int>(bricks);
+  }
+  return wish;
+}
+
 Domain read_domain(const TableReader& root) {
   const TableReader table(*root.table("domain"), root.dimension(), "[domain]");
   const Box box = read_corners(table, "the domain");
@@ -60,6 +85,7 @@ Domain read_domain(const TableReader& root) {
   domain.strip_axis = strip_axis == "longest"
                           ? longest_axis(domain, table.dimension())
                           : axis_index(strip_axis, table.dimension(), table.place("strip_axis"));
+  domain.cuts = read_cuts(table);
   return domain;
 }
 

@@ -69,6 +69,8 @@ std::string type_text(const KeySpec& spec) {
       return "boolean or box";
     case ValueType::Pairs:
       return "array of [id, id]";
+    case ValueType::Cuts:
+      return "auto, strips or integers";
     case ValueType::Table:
       return "table";
     case ValueType::Tables:

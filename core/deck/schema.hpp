@@ -46,6 +46,7 @@ enum class ValueType {
   Radius,  ///< number, [min, max] or array of size classes
   Fixed,   ///< boolean or box
   Pairs,   ///< array of [id, id]
+  Cuts,    ///< a word, or as many integers as the deck has dimensions
   Table,
   Tables
 };

@@ -31,6 +31,9 @@ constexpr KeySpec kRunKeys[] = {
     {"[domain]", "periodic", T::Names, "", "none", "axes that wrap around, such as `[\"x\"]`"},
     {"[domain]", "strip_axis", T::Choice, "", "longest", "axis along which ranks own strips",
      "x|y|z|longest"},
+    {"[domain]", "cuts", T::Cuts, "", "auto",
+     "how ranks share the domain: in the way with the smallest predicted step, as strips, or as "
+     "bricks, a number along each axis, such as `[2, 2, 1]`"},
     {"[domain]", "outside", T::Choice, "", "error",
      "what happens when a particle leaves: the run ends, the particle is taken out, or all axes "
      "wrap around",

@@ -213,13 +213,19 @@ template BondData data_of(const Bond<2>&);
 template BondData data_of(const Bond<3>&);
 template <int Dim>
 void BondSet<Dim>::require_short(const Grid<Dim>& grid, const ParticleStore<Dim>& store) const {
-  const auto slab = [&](std::int32_t row) {
-    return static_cast<int>(store.key[static_cast<std::size_t>(row)] / grid.slab_size());
+  const auto cell = [&](std::int32_t row) {
+    return cell_of_key(grid, store.key[static_cast<std::size_t>(row)]);
   };
   for (std::int32_t b = 0; b < static_cast<std::int32_t>(bonds_.size()); ++b) {
-    int apart = std::abs(slab(end_a(b)) - slab(end_b(b)));
-    if (grid.is_periodic(0)) apart = std::min(apart, grid.num_slabs() - apart);
-    if (apart <= 1) continue;
+    const CellAt<Dim> from = cell(end_a(b)), to = cell(end_b(b));
+    int farthest = 0;
+    for (int axis = 0; axis < Dim; ++axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      int apart = std::abs(from[k] - to[k]);
+      if (grid.is_periodic(axis)) apart = std::min(apart, grid.cells(axis) - apart);
+      farthest = std::max(farthest, apart);
+    }
+    if (farthest <= 1) continue;
     const auto& bond = bonds_[static_cast<std::size_t>(b)];
     throw RunError("the bond between particles " + std::to_string(bond.id_a) + " and " +
                    std::to_string(bond.id_b) +

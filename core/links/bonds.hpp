@@ -11,7 +11,7 @@
 #include <barchan/core/model/model.hpp>
 #include <barchan/core/particles/particle_store.hpp>
 #include <barchan/core/search/bonded_pairs.hpp>
-#include <barchan/core/search/grid.hpp>
+#include <barchan/core/search/cell_box.hpp>
 
 namespace barchan {
 

@@ -20,12 +20,22 @@ namespace barchan {
 /// What happens to a particle that leaves the domain along an axis that is not periodic.
 enum class OutsidePolicy { Error, Delete };
 
+/// How ranks are cut: in the way with the smallest predicted step, into strips, or into bricks,
+/// a number along each axis.
+struct CutWish {
+  enum class Kind { Auto, Strips, Bricks };
+  Kind kind = Kind::Auto;
+  std::array<int, 3> bricks{1, 1, 1};  ///< along x, y and z
+  SourcePlace place{};                 ///< in the deck, if it comes from one
+};
+
 /// Box that bounds the particles; periodic axes wrap.
 struct Domain {
   Vec3 lo = Vec3::Zero();  ///< [m]
   Vec3 hi = Vec3::Zero();  ///< [m]
   std::array<bool, 3> periodic{};
   int strip_axis = 0;  ///< axis along which ranks cut strips
+  CutWish cuts{};
   OutsidePolicy outside = OutsidePolicy::Error;
   SourcePlace place{};  ///< in the deck, if it comes from one
 };

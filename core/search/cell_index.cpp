@@ -3,112 +3,106 @@
 #include <algorithm>
 
 namespace barchan {
+namespace {
+
+/// Of a periodic axis with fewer cells two are beside each other both ways: nearest images of
+/// particles in cells side by side may be others than themselves.
+constexpr int kFewestWithoutImages = 4;
+
+}  // namespace
 
 template <int Dim>
-void CellIndex::index(const Grid<Dim>& grid, const ParticleStore<Dim>& store, Rows rows,
-                      int from_slab, int to_slab) {
-  slab_begin = from_slab;
-  slab_end = to_slab;
-  first_key = from_slab * grid.slab_size();
-  const auto num_cells = static_cast<std::size_t>((to_slab - from_slab) * grid.slab_size());
-  start.resize(num_cells + 1);
-  std::size_t cell = 0;
+void CellIndex<Dim>::cover(const Grid<Dim>& grid, const CellBox<Dim>& box) {
+  std::size_t num_cells = 1;
+  for (int axis = 0; axis < Dim; ++axis) {
+    const auto k = static_cast<std::size_t>(axis);
+    Axis& a = axes_[k];
+    a.cells = grid.cells(axis);
+    a.is_ring = grid.is_periodic(axis);
+    const bool is_cut = box.length(axis) < a.cells;
+    int first = box.lo[k] - (is_cut ? 1 : 0), end = box.hi[k] + (is_cut ? 1 : 0);
+    if (!a.is_ring) first = std::max(first, 0), end = std::min(end, a.cells);
+    a.wraps = a.is_ring && end - first >= a.cells;
+    a.length = std::min(end - first, a.cells);
+    a.first = a.wraps ? 0 : (first + a.cells) % a.cells;
+    num_cells *= static_cast<std::size_t>(a.length);
+  }
+  rows_.assign(num_cells, Rows{0, 0});
+}
+
+template <int Dim>
+void CellIndex<Dim>::add(const Grid<Dim>& grid, const ParticleStore<Dim>& store, Rows rows) {
+  std::int64_t last_key = -1;
+  Rows* cell = nullptr;
   for (std::int32_t row = rows.begin; row < rows.end; ++row) {
-    const auto own = static_cast<std::size_t>(store.key[static_cast<std::size_t>(row)] - first_key);
-    while (cell <= own) start[cell++] = row;
+    const std::int64_t key = store.key[static_cast<std::size_t>(row)];
+    if (key != last_key) {
+      cell = &rows_[static_cast<std::size_t>(place(cell_of_key(grid, key)))];
+      *cell = {row, row};
+      last_key = key;
+    }
+    cell->end = row + 1;
   }
-  while (cell <= num_cells) start[cell++] = rows.end;
 }
 
 template <int Dim>
-void Neighbourhood<Dim>::collect(const Grid<Dim>& grid, const CellIndex& index, std::int64_t key,
-                                 int first_offset, int last_offset, std::int64_t after_key) {
-  const int nz = grid.cells(Dim - 1);
-  const std::int64_t line = key / nz;
-  if (line != line_ || &index != index_) find_lines(grid, index, line, first_offset, last_offset);
+auto Neighbourhood<Dim>::steps(const typename CellIndex<Dim>::Axis& axis, int c) -> Steps {
+  Steps found;
+  const int own = axis.local(c);
+  for (int l = own - 1; l <= own + 1; ++l) {
+    const bool is_inside = l >= 0 && l < axis.length;
+    if (!is_inside && !axis.wraps) continue;
+    const int local = is_inside ? l : (l + axis.length) % axis.length;
+    const auto end = found.local.begin() + found.count;
+    if (std::find(found.local.begin(), end, local) != end) continue;  // an axis of one or two cells
+    found.local[static_cast<std::size_t>(found.count++)] = local;
+  }
+  // Around the end of the box or not, seen from the cell.
+  const bool is_at_end = c == 0 || c == axis.cells - 1;
+  wraps = wraps || (axis.is_ring && (is_at_end || axis.cells < kFewestWithoutImages));
+  return found;
+}
+
+template <int Dim>
+void Neighbourhood<Dim>::collect(const CellIndex<Dim>& index, const CellAt<Dim>& at, Rows wanted) {
   count = 0;
-  sorted_ = true;
-  wraps = is_narrow_;
-  const int z = static_cast<int>(key - line * nz);
-  for (int l = 0; l < num_lines_; ++l)
-    add_line(grid, index, lines_[static_cast<std::size_t>(l)], z, after_key);
-  finish();
-}
-
-template <int Dim>
-void Neighbourhood<Dim>::find_lines(const Grid<Dim>& grid, const CellIndex& index,
-                                    std::int64_t line, int first_offset, int last_offset) {
-  line_ = line;
-  index_ = &index;
-  num_lines_ = 0;
-  // Where there are four or more, nearest images of particles in cells side by side are themselves.
-  is_narrow_ = false;
-  for (int k = 0; k < Dim; ++k)
-    is_narrow_ = is_narrow_ || (grid.is_periodic(k) && grid.cells(k) < 4);
-  const int n0 = grid.cells(0), nz = grid.cells(Dim - 1), ny = Dim == 3 ? grid.cells(1) : 1;
-  const int y = static_cast<int>(line % ny), x = static_cast<int>(line / ny);
-  const int dy_max = Dim == 3 ? 1 : 0;
-  for (int dx = first_offset; dx <= last_offset; ++dx) {
-    const int slab = grid.is_periodic(0) ? (x + dx + n0) % n0 : x + dx;
-    if (slab < 0 || slab >= n0 || !index.has_slab(slab)) continue;
-    for (int dy = -dy_max; dy <= dy_max; ++dy) {
-      const int row = Dim == 3 && grid.is_periodic(1) ? (y + dy + ny) % ny : y + dy;
-      if (row < 0 || row >= ny) continue;
-      lines_[static_cast<std::size_t>(num_lines_++)] = {
-          (static_cast<std::int64_t>(slab) * ny + row) * nz, slab != x + dx || row != y + dy};
-    }
-  }
-}
-
-template <int Dim>
-void Neighbourhood<Dim>::add_line(const Grid<Dim>& grid, const CellIndex& index, const Line& line,
-                                  int z, std::int64_t after_key) {
-  const int nz = grid.cells(Dim - 1);
-  const auto clip = [&](int from, int to) {
-    const std::int64_t begin = std::max(line.key + from, after_key + 1), end = line.key + to;
-    if (begin >= end) return;
-    wraps = wraps || line.wraps;
-    add(index.cells(begin, end));
+  wraps = false;
+  std::array<Steps, Dim> around;
+  for (std::size_t k = 0; k < Dim; ++k) around[k] = steps(index.axes_[k], at[k]);
+  const auto add_line = [&](std::int64_t line) {
+    line *= index.axes_[Dim - 1].length;
+    for (int z = 0; z < around[Dim - 1].count; ++z)
+      add(index.rows_[static_cast<std::size_t>(line +
+                                               around[Dim - 1].local[static_cast<std::size_t>(z)])],
+          wanted);
   };
-  if (grid.is_periodic(Dim - 1) && (z == 0 || z == nz - 1)) {
-    wraps = true;
-    if (nz <= 3) return clip(0, nz);
-    if (z == 0) {
-      clip(0, 2);
-      return clip(nz - 1, nz);
+  for (int x = 0; x < around[0].count; ++x) {
+    const std::int64_t slab = around[0].local[static_cast<std::size_t>(x)];
+    if constexpr (Dim == 2) {
+      add_line(slab);
+    } else {
+      for (int y = 0; y < around[1].count; ++y)
+        add_line(slab * index.axes_[1].length + around[1].local[static_cast<std::size_t>(y)]);
     }
-    clip(0, 1);
-    return clip(nz - 2, nz);
   }
-  clip(std::max(0, z - 1), std::min(nz, z + 2));
+  const auto by_begin = [](const Rows& a, const Rows& b) { return a.begin < b.begin; };
+  if (!std::is_sorted(ranges.begin(), ranges.begin() + count, by_begin))
+    std::sort(ranges.begin(), ranges.begin() + count, by_begin);
 }
 
 template <int Dim>
-void Neighbourhood<Dim>::add(Rows rows) {
-  if (rows.begin == rows.end) return;
-  if (count > 0 && rows.begin < ranges[static_cast<std::size_t>(count - 1)].end) sorted_ = false;
-  ranges[static_cast<std::size_t>(count++)] = rows;
+void Neighbourhood<Dim>::add(Rows rows, Rows wanted) {
+  rows = {std::max(rows.begin, wanted.begin), std::min(rows.end, wanted.end)};
+  if (rows.begin >= rows.end) return;
+  if (count > 0 && ranges[static_cast<std::size_t>(count - 1)].end == rows.begin)
+    ranges[static_cast<std::size_t>(count - 1)].end = rows.end;
+  else
+    ranges[static_cast<std::size_t>(count++)] = rows;
 }
 
-template <int Dim>
-void Neighbourhood<Dim>::finish() {
-  if (sorted_) return;
-  auto* const first = ranges.data();
-  std::sort(first, first + count, [](const Rows& a, const Rows& b) { return a.begin < b.begin; });
-  // An axis of one or two periodic cells is met twice.
-  int kept = 0;
-  for (int q = 0; q < count; ++q) {
-    if (kept == 0 || ranges[static_cast<std::size_t>(q)].begin >=
-                         ranges[static_cast<std::size_t>(kept - 1)].end) {
-      ranges[static_cast<std::size_t>(kept++)] = ranges[static_cast<std::size_t>(q)];
-    }
-  }
-  count = kept;
-}
-
-template void CellIndex::index(const Grid<2>&, const ParticleStore<2>&, Rows, int, int);
-template void CellIndex::index(const Grid<3>&, const ParticleStore<3>&, Rows, int, int);
-template struct Neighbourhood<2>;
-template struct Neighbourhood<3>;
+template class CellIndex<2>;
+template class CellIndex<3>;
+template class Neighbourhood<2>;
+template class Neighbourhood<3>;
 
 }  // namespace barchan

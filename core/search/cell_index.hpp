@@ -1,69 +1,79 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include <barchan/core/base/rows.hpp>
 #include <barchan/core/particles/particle_store.hpp>
-#include <barchan/core/search/grid.hpp>
+#include <barchan/core/search/cell_box.hpp>
 
 namespace barchan {
 
-/// Rows of every cell of consecutive slabs: cell c of the first slab's keys starts at start[c].
-struct CellIndex {
-  int slab_begin = 0, slab_end = 0;
-  std::int64_t first_key = 0;
-  std::vector<std::int32_t> start;  ///< one more than cells; absolute indices
+/// The rows of every cell of a box, and of the cells around it.
+///
+///   own    |   | lo . . . hi-1 |   |      a cell more on either side along axes that are cut,
+///   covers | g | o   o   o   o | g |      around the end where the axis is periodic
+template <int Dim>
+class CellIndex {
+ public:
+  /// No rows yet.
+  void cover(const Grid<Dim>& grid, const CellBox<Dim>& box);
+  /// @pre the rows of a cell stand together, and lie in what is covered
+  void add(const Grid<Dim>& grid, const ParticleStore<Dim>& store, Rows rows);
 
-  /// @pre keys of rows [begin, end) ascend and lie in the slabs
-  template <int Dim>
-  void index(const Grid<Dim>& grid, const ParticleStore<Dim>& store, Rows rows, int from_slab,
-             int to_slab);
+  /// Of a cell that is covered.
+  [[nodiscard]] Rows rows(const CellAt<Dim>& at) const {
+    return rows_[static_cast<std::size_t>(place(at))];
+  }
+  [[nodiscard]] std::size_t bytes() const { return rows_.capacity() * sizeof(Rows); }
 
-  [[nodiscard]] bool has_slab(int slab) const { return slab >= slab_begin && slab < slab_end; }
-  [[nodiscard]] Rows cells(std::int64_t key_begin, std::int64_t key_end) const {
-    return {start[static_cast<std::size_t>(key_begin - first_key)],
-            start[static_cast<std::size_t>(key_end - first_key)]};
+ private:
+  template <int>
+  friend class Neighbourhood;
+
+  /// Along one axis, from `first` on, around the end.
+  struct Axis {
+    int first = 0, length = 0, cells = 0;
+    bool wraps = false;    ///< all of a periodic axis is covered
+    bool is_ring = false;  ///< periodic
+
+    [[nodiscard]] int local(int c) const { return c >= first ? c - first : c - first + cells; }
+  };
+  [[nodiscard]] std::int64_t place(const CellAt<Dim>& at) const {
+    std::int64_t p = axes_[0].local(at[0]);
+    for (std::size_t k = 1; k < Dim; ++k) p = p * axes_[k].length + axes_[k].local(at[k]);
+    return p;
   }
-  [[nodiscard]] std::int32_t first_row(int slab, std::int64_t slab_size) const {
-    return start[static_cast<std::size_t>((slab - slab_begin) * slab_size)];
-  }
+
+  std::array<Axis, Dim> axes_{};
+  std::vector<Rows> rows_;
 };
 
-/// The cells around one cell as row ranges in ascending order, taken from `index`, which must not
-/// change in between.
-/// @param slab_offsets  which neighbouring slabs to look at: {-1,0,1} or one of them
-/// @param after_key     only cells with a larger key; -1 for all
+/// The rows of the cells around one cell, its own among them, as ascending ranges.
 template <int Dim>
-struct Neighbourhood {
+class Neighbourhood {
+ public:
   std::array<Rows, 32> ranges;
   int count = 0;
   bool wraps = false;  ///< some lie around an end of the box
 
-  void collect(const Grid<Dim>& grid, const CellIndex& index, std::int64_t key, int first_offset,
-               int last_offset, std::int64_t after_key);
+  /// @param wanted  other rows are left out
+  void collect(const CellIndex<Dim>& index, const CellAt<Dim>& at, Rows wanted);
 
  private:
-  /// Cells along the last axis, from `key` on.
-  struct Line {
-    std::int64_t key = 0;
-    bool wraps = false;
+  /// Of one axis, as the index places them.
+  struct Steps {
+    std::array<int, 3> local;
+    int count = 0;
   };
-
-  void find_lines(const Grid<Dim>& grid, const CellIndex& index, std::int64_t line,
-                  int first_offset, int last_offset);
-  void add_line(const Grid<Dim>& grid, const CellIndex& index, const Line& line, int z,
-                std::int64_t after_key);
-  void add(Rows rows);
-  void finish();
-  bool sorted_ = true;
-
-  // Cells of one line are asked for one after the other, and have the same lines around them.
-  std::array<Line, 9> lines_;
-  int num_lines_ = 0;
-  std::int64_t line_ = -1;
-  const CellIndex* index_ = nullptr;
-  bool is_narrow_ = false;  ///< an axis has so few cells that two are beside each other both ways
+  [[nodiscard]] Steps steps(const typename CellIndex<Dim>::Axis& axis, int c);
+  void add(Rows rows, Rows wanted);
 };
+
+extern template class CellIndex<2>;
+extern template class CellIndex<3>;
+extern template class Neighbourhood<2>;
+extern template class Neighbourhood<3>;
 
 }  // namespace barchan

@@ -84,24 +84,25 @@ void ContactSearch<Dim>::set_laws(std::int32_t i, PairList& list, std::int64_t b
 }
 
 template <int Dim>
-void ContactSearch<Dim>::owned(const CellIndex& cells, Rows rows, PairList& list,
+void ContactSearch<Dim>::owned(const CellIndex<Dim>& cells, PairList& list,
                                std::vector<std::int64_t>& row_begin) const {
   const bool all_pairs = rule_.kind == ContactSearchKind::AllPairs;
+  const std::int32_t n = store_.num_owned;
   std::int64_t last_key = -1, size = list.size();
   Neighbourhood<Dim> around;
   around.count = 1;
-  around.ranges[0].end = store_.num_owned;
+  around.ranges[0].end = n;
   SearchJob job = job_;
   job.wraps = grid_.box().any();
-  for (std::int32_t i = rows.begin; i < rows.end; ++i) {
+  for (std::int32_t i = 0; i < n; ++i) {
     row_begin[static_cast<std::size_t>(i)] = size;
     const std::int64_t key = store_.key[static_cast<std::size_t>(i)];
     if (!all_pairs && key != last_key) {
-      around.collect(grid_, cells, key, grid_.is_periodic(0) ? -1 : 0, 1, key - 1);
+      around.collect(cells, cell_of_key(grid_, key), {i, n});
       job.wraps = around.wraps;
       last_key = key;
     }
-    around.ranges[0].begin = i + 1;  // its own cell is the lowest of them
+    around.ranges[0].begin = i + 1;  // its own cell's rows are the lowest of them
     scan(job, i, std::span(around.ranges.data(), static_cast<std::size_t>(around.count)), list,
          size);
   }
@@ -109,22 +110,23 @@ void ContactSearch<Dim>::owned(const CellIndex& cells, Rows rows, PairList& list
 }
 
 template <int Dim>
-void ContactSearch<Dim>::across(const CellIndex& own, const CellIndex& ghosts, int own_to_ghosts,
+void ContactSearch<Dim>::across(const CellIndex<Dim>& cells, Rows own, Rows ghosts,
                                 PairList& list) const {
   const bool all_pairs = rule_.kind == ContactSearchKind::AllPairs;
   std::int64_t last_key = -1, size = list.size();
   Neighbourhood<Dim> around;
   around.count = 1;
-  around.ranges[0] = {ghosts.start.front(), ghosts.start.back()};
+  around.ranges[0] = ghosts;
   SearchJob job = job_;
   job.wraps = grid_.box().any();
-  for (std::int32_t i = own.start.front(); i < own.start.back(); ++i) {
+  for (std::int32_t i = own.begin; i < own.end; ++i) {
     const std::int64_t key = store_.key[static_cast<std::size_t>(i)];
     if (!all_pairs && key != last_key) {
-      around.collect(grid_, ghosts, key, own_to_ghosts, own_to_ghosts, -1);
+      around.collect(cells, cell_of_key(grid_, key), ghosts);
       job.wraps = around.wraps;
       last_key = key;
     }
+    if (around.count == 0) continue;
     scan(job, i, std::span(around.ranges.data(), static_cast<std::size_t>(around.count)), list,
          size);
   }

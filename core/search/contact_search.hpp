@@ -45,15 +45,12 @@ class ContactSearch {
   ContactSearch(const Grid<Dim>& grid, const ParticleStore<Dim>& store, const Planes& planes,
                 const SearchRule& rule);
 
-  /// Appends the candidates of owned rows [rows.begin, rows.end) with owned partners; row_begin[i]
-  /// = first pair of row i.
-  void owned(const CellIndex& cells, Rows rows, PairList& list,
+  /// Appends the candidates of two owned rows; row_begin[i] = first pair of row i.
+  void owned(const CellIndex<Dim>& cells, PairList& list,
              std::vector<std::int64_t>& row_begin) const;
 
-  /// Appends the candidates across a cut, owned ones first. @param own, ghosts  one slab each
-  /// @param own_to_ghosts  slab offset as the grid counts it, +1 or −1 (periodic: around the end)
-  void across(const CellIndex& own, const CellIndex& ghosts, int own_to_ghosts,
-              PairList& list) const;
+  /// Appends the candidates of owned rows and ghosts, owned ones first.
+  void across(const CellIndex<Dim>& cells, Rows own, Rows ghosts, PairList& list) const;
 
  private:
   void scan(SearchJob& job, std::int32_t i, std::span<const Rows> partners, PairList& list,

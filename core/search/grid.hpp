@@ -58,7 +58,7 @@ class Grid {
     const int top = cells_[a] - 1;
     return c >= top ? top : (c > 0.0 ? static_cast<int>(c) : 0);
   }
-  /// Position along the strip axis, within the box where that wraps [m].
+  /// Position along the first axis, within the box where that wraps [m].
   [[nodiscard]] double along_strips(const double* x) const {
     double wrapped[Dim];
     std::copy_n(x, Dim, wrapped);
@@ -71,11 +71,18 @@ class Grid {
     x[axis_[0]] = along_strips;
     return coordinate(x, 0);
   }
-  [[nodiscard]] std::int64_t key(const double* x) const {
-    std::int64_t key = coordinate(x, 0);
-    for (int k = 1; k < Dim; ++k) key = key * cells(k) + coordinate(x, k);
+  /// Coordinates of the cell of a position.
+  [[nodiscard]] std::array<int, Dim> cell(const double* x) const {
+    std::array<int, Dim> at;
+    for (int k = 0; k < Dim; ++k) at[static_cast<std::size_t>(k)] = coordinate(x, k);
+    return at;
+  }
+  [[nodiscard]] std::int64_t key(const std::array<int, Dim>& cell) const {
+    std::int64_t key = cell[0];
+    for (int k = 1; k < Dim; ++k) key = key * cells(k) + cell[static_cast<std::size_t>(k)];
     return key;
   }
+  [[nodiscard]] std::int64_t key(const double* x) const { return key(cell(x)); }
   /// Whether a position is within the domain; along periodic axes it always is.
   [[nodiscard]] bool contains(const double* x) const {
     for (int a = 0; a < Dim; ++a) {

@@ -117,6 +117,12 @@ Json contract_of(const RunSummary& s) {
 
 void add_further(const RunSummary& s, Json& json) {
   json["interrupted"] = s.interrupted;
+  const auto along_axes = [&](const std::array<int, 3>& counts) {
+    return Json(std::vector<int>(counts.begin(), counts.begin() + s.dimension));
+  };
+  json["cuts"] = {{"form", s.cuts.are_strips ? "strips" : "bricks"},
+                  {"ranks", along_axes(s.cuts.ranks)},
+                  {"lanes", along_axes(s.cuts.lanes)}};
   json["loop_steps"] = s.loop_steps;
   json["exchange_choice"] = choice_of(s.choice);
   json["phases_most"] = s.phases_most;

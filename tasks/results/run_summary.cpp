@@ -111,6 +111,7 @@ RunSummary summarize(Simulation& simulation, const std::string& deck,
   summary.dimension = model.dimension;
   summary.ranks = simulation.communicator().size();
   summary.threads = options.threads;
+  summary.cuts = simulation.cuts();
   summary.choice = simulation.exchange_choice();
   summary.exchange = summary.ranks > 1 ? summary.choice.name : options.exchange;
   summary.schedule = options.schedule == Schedule::Overlap ? "overlap" : "sequential";

@@ -26,6 +26,7 @@ struct RunSummary {
   std::vector<SourceKey> deck_keys;  ///< what the deck says
   int dimension = 2;
   int ranks = 1, threads = 1;  ///< threads per rank
+  CutsInUse cuts;
   std::string exchange, schedule, progress, contact_search, transport, vector;
   Machine machine;
   std::int64_t particles = 0, steps = 0;

@@ -1,4 +1,4 @@
-// Values encode rank, side, step and index, so that a message that lands in the wrong place or step
+// Values encode rank, link, step and index, so that a message that lands in the wrong place or step
 // shows.
 
 #include <barchan/comm/exchanges/make_exchange.hpp>
@@ -19,31 +19,35 @@
 namespace barchan {
 namespace {
 
-constexpr std::array both_sides{Side::Left, Side::Right};
+constexpr std::array both_links{kLeftLink, kRightLink};
 
-std::size_t length_of(int rank, Side side, int step, std::size_t at_most) {
-  std::mt19937_64 random(static_cast<std::uint64_t>(rank * 2 + static_cast<int>(side)) * 1000003U +
+int opposite(int link) {
+  return link == kLeftLink ? kRightLink : kLeftLink;
+}
+
+std::size_t length_of(int rank, int link, int step, std::size_t at_most) {
+  std::mt19937_64 random(static_cast<std::uint64_t>(rank * 2 + link) * 1000003U +
                          static_cast<std::uint64_t>(step));
   if (random() % 8 == 0) return 0;
   if (random() % 8 == 0) return at_most;
   return random() % (at_most + 1);
 }
 
-std::byte value_of(int rank, Side side, int step, std::size_t index) {
+std::byte value_of(int rank, int link, int step, std::size_t index) {
   const auto word = static_cast<std::uint64_t>(rank + 1) * 0x9E3779B97F4A7C15U ^
-                    static_cast<std::uint64_t>(static_cast<int>(side) + 1) * 0xC2B2AE3D27D4EB4FU ^
+                    static_cast<std::uint64_t>(link + 1) * 0xC2B2AE3D27D4EB4FU ^
                     static_cast<std::uint64_t>(step) * 0x165667B19E3779F9U ^
                     index * 0x27D4EB2F165667C5U;
   return static_cast<std::byte>(word >> 40 & 0xFF);
 }
 
-void fill(std::span<std::byte> bytes, int rank, Side side, int step) {
-  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = value_of(rank, side, step, i);
+void fill(std::span<std::byte> bytes, int rank, int link, int step) {
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = value_of(rank, link, step, i);
 }
 
-std::vector<std::byte> message_of(int rank, Side side, int step, std::size_t length) {
+std::vector<std::byte> message_of(int rank, int link, int step, std::size_t length) {
   std::vector<std::byte> bytes(length);
-  fill(bytes, rank, side, step);
+  fill(bytes, rank, link, step);
   return bytes;
 }
 
@@ -63,52 +67,54 @@ class ExchangeOfEveryKind : public testing::TestWithParam<Case> {
     return make_exchange(GetParam().exchange, comm_, neighbours_, options);
   }
 
-  void send(Exchange& exchange, Side side, int step, std::size_t at_most) {
-    if (!neighbours_.has(side)) return;
-    const std::size_t length = length_of(comm_.rank(), side, step, at_most);
-    fill(exchange.outgoing(side, length), comm_.rank(), side, step);
-    exchange.send(side);
+  void send(Exchange& exchange, int link, int step, std::size_t at_most) {
+    if (!neighbours_.has(link)) return;
+    const std::size_t length = length_of(comm_.rank(), link, step, at_most);
+    fill(exchange.outgoing(link, length), comm_.rank(), link, step);
+    exchange.send(link);
   }
 
-  void receive(Exchange& exchange, Side side, int step, std::size_t at_most) {
-    if (!neighbours_.has(side)) return;
-    wait_until([&] { return exchange.poll(side); }, [&] { return "step " + std::to_string(step); });
-    const int from = neighbours_.rank(side);
+  void receive(Exchange& exchange, int link, int step, std::size_t at_most) {
+    if (!neighbours_.has(link)) return;
+    wait_until([&] { return exchange.poll(link); }, [&] { return "step " + std::to_string(step); });
+    const int from = neighbours_.rank(link);
     const auto expected =
-        message_of(from, opposite(side), step, length_of(from, opposite(side), step, at_most));
-    const auto received = exchange.received(side);
-    ASSERT_EQ(received.size(), expected.size()) << "step " << step << " " << name_of(side);
-    ASSERT_TRUE(std::ranges::equal(received, expected)) << "step " << step << " " << name_of(side);
-    exchange.release(side);
+        message_of(from, opposite(link), step, length_of(from, opposite(link), step, at_most));
+    const auto received = exchange.received(link);
+    ASSERT_EQ(received.size(), expected.size()) << "step " << step << " " << link;
+    ASSERT_TRUE(std::ranges::equal(received, expected)) << "step " << step << " " << link;
+    exchange.release(link);
   }
 
   void run_steps(Exchange& exchange, int begin, int end, std::size_t at_most) {
     for (int step = begin; step < end; ++step) {
-      for (const Side side : both_sides) send(exchange, side, step, at_most);
+      for (const int link : both_links) send(exchange, link, step, at_most);
       const bool is_left_first = step % 3 != 0;
-      receive(exchange, is_left_first ? Side::Left : Side::Right, step, at_most);
-      receive(exchange, is_left_first ? Side::Right : Side::Left, step, at_most);
+      receive(exchange, is_left_first ? kLeftLink : kRightLink, step, at_most);
+      receive(exchange, is_left_first ? kRightLink : kLeftLink, step, at_most);
       if (HasFatalFailure()) comm_.abort(1);
     }
   }
 
-  std::vector<std::byte> bulk_of(int rank, Side side, int step, std::size_t at_most) {
-    return message_of(rank, side, step, length_of(rank, side, step, at_most));
+  std::vector<std::byte> bulk_of(int rank, int link, int step, std::size_t at_most) {
+    return message_of(rank, link, step, length_of(rank, link, step, at_most));
   }
 
   void run_bulk(Exchange& exchange, int step, std::size_t at_most) {
-    const auto mine = [&](Side side) {
-      return neighbours_.has(side) ? bulk_of(comm_.rank(), side, step, at_most)
+    const auto mine = [&](int link) {
+      return neighbours_.has(link) ? bulk_of(comm_.rank(), link, step, at_most)
                                    : std::vector<std::byte>{};
     };
-    exchange.begin_bulk(mine(Side::Left), mine(Side::Right));
+    const std::vector<std::byte> left = mine(kLeftLink), right = mine(kRightLink);
+    const std::array<std::span<const std::byte>, 2> outgoing{left, right};
+    exchange.begin_bulk(outgoing);
     wait_until([&] { return exchange.poll_bulk(); },
                [&] { return "bulk " + std::to_string(step); });
-    for (const Side side : both_sides) {
-      const int from = neighbours_.rank(side);
+    for (const int link : both_links) {
+      const int from = neighbours_.rank(link);
       const auto expected =
-          from < 0 ? std::vector<std::byte>{} : bulk_of(from, opposite(side), step, at_most);
-      EXPECT_TRUE(exchange.bulk(side) == expected) << "bulk " << step << " " << name_of(side);
+          from < 0 ? std::vector<std::byte>{} : bulk_of(from, opposite(link), step, at_most);
+      EXPECT_TRUE(exchange.bulk(link) == expected) << "bulk " << step << " " << link;
     }
     if (HasFailure()) comm_.abort(1);
   }
@@ -123,9 +129,9 @@ TEST_P(ExchangeOfEveryKind, BringsEveryHaloToTheRightPlaceInTheRightStep) {
   run_steps(*exchange, 0, 400, 10000);
 
   const ExchangeStats stats = exchange->stats();
-  const auto num_sides =
-      static_cast<std::uint64_t>(neighbours_.has(Side::Left) + neighbours_.has(Side::Right));
-  EXPECT_EQ(stats.halo_messages, 400 * num_sides);
+  const auto num_links =
+      static_cast<std::uint64_t>(neighbours_.has(kLeftLink) + neighbours_.has(kRightLink));
+  EXPECT_EQ(stats.halo_messages, 400 * num_links);
   EXPECT_FALSE(stats.transport.empty());
   EXPECT_EQ(exchange->name(), GetParam().exchange);
 }
@@ -192,34 +198,34 @@ TEST_P(ExchangeOfEveryKind, AnswersWithinTheStepWhereSidesMayBeUneven) {
   if (is_even) return;
 
   for (int step = 0; step < 200; ++step) {
-    send(*exchange, Side::Right, step, 2000);
-    receive(*exchange, Side::Left, step, 2000);
-    send(*exchange, Side::Left, step, 2000);
-    receive(*exchange, Side::Right, step, 2000);
+    send(*exchange, kRightLink, step, 2000);
+    receive(*exchange, kLeftLink, step, 2000);
+    send(*exchange, kLeftLink, step, 2000);
+    receive(*exchange, kRightLink, step, 2000);
     if (HasFatalFailure()) comm_.abort(1);
   }
 
-  const auto num_sides =
-      static_cast<std::uint64_t>(neighbours_.has(Side::Left) + neighbours_.has(Side::Right));
-  EXPECT_EQ(exchange->stats().messages(), 200 * num_sides);
+  const auto num_links =
+      static_cast<std::uint64_t>(neighbours_.has(kLeftLink) + neighbours_.has(kRightLink));
+  EXPECT_EQ(exchange->stats().messages(), 200 * num_links);
 }
 
 TEST_P(ExchangeOfEveryKind, RefusesToPackAheadOfTheNeighbour) {
   const auto exchange = make();
   if (comm_.size() > 1) {
-    for (const Side side : both_sides) send(*exchange, side, 0, 100);
-    const Side side = neighbours_.has(Side::Left) ? Side::Left : Side::Right;
+    for (const int link : both_links) send(*exchange, link, 0, 100);
+    const int link = neighbours_.has(kLeftLink) ? kLeftLink : kRightLink;
 
-    EXPECT_THROW(static_cast<void>(exchange->outgoing(side, 8)), std::logic_error);
+    EXPECT_THROW(static_cast<void>(exchange->outgoing(link, 8)), std::logic_error);
 
-    receive(*exchange, Side::Left, 0, 100);
-    receive(*exchange, Side::Right, 0, 100);
-    EXPECT_THROW(static_cast<void>(exchange->outgoing(side, std::size_t{1} << 20)),
+    receive(*exchange, kLeftLink, 0, 100);
+    receive(*exchange, kRightLink, 0, 100);
+    EXPECT_THROW(static_cast<void>(exchange->outgoing(link, std::size_t{1} << 20)),
                  std::logic_error);
   }
-  if (!neighbours_.has(Side::Left)) {
-    EXPECT_THROW(static_cast<void>(exchange->outgoing(Side::Left, 8)), std::logic_error);
-    EXPECT_FALSE(exchange->poll(Side::Left));
+  if (!neighbours_.has(kLeftLink)) {
+    EXPECT_THROW(static_cast<void>(exchange->outgoing(kLeftLink, 8)), std::logic_error);
+    EXPECT_FALSE(exchange->poll(kLeftLink));
   }
   comm_.barrier();
 }
@@ -258,7 +264,7 @@ TEST(Exchange, TellsTheKnownNamesWhenAskedForAnUnknownOne) {
   const auto comm = Communicator::world();
 
   try {
-    static_cast<void>(make_exchange("put-flg", comm, {}));
+    static_cast<void>(make_exchange("put-flg", comm, Neighbours{}));
     FAIL() << "an unknown exchange was made";
   } catch (const InputError& error) {
     EXPECT_NE(std::string(error.what()).find("put-flag"), std::string::npos) << error.what();

@@ -15,6 +15,7 @@
 
 #include <barchan/core/kernels/kernel_set.hpp>
 #include <barchan/tasks/forecast.hpp>
+#include <barchan/tasks/strip_plan.hpp>
 
 #include "running.hpp"
 #include "scenarios.hpp"
@@ -86,9 +87,25 @@ Outcome reference_of(const Scenario& s) {
   return out;
 }
 
+/// Bricks along several axes, taking turns, where they fit; empty: as the run likes it.
+std::string cuts_for(const Scenario& s, unsigned turn) {
+  const int n = num_ranks();
+  const std::array<std::string, 4> all{"", fmt::format("1,{}", n),
+                                       n % 2 == 0 ? fmt::format("2,{}", n / 2) : "",
+                                       s.model.dimension == 3 ? fmt::format("1,1,{}", n) : ""};
+  const std::string& cuts = all[turn % all.size()];
+  if (cuts.empty()) return cuts;
+  try {
+    (void)choose_cuts({parse_cuts(cuts), n, 1, false, {}}, plan_cuts(s.model, s.set).room);
+  } catch (const InputError&) {
+    return "";
+  }
+  return cuts;
+}
+
 /// One run for each exchange; everything else takes turns, so that all pairs of choices meet over
 /// the scenarios.
-std::vector<RunOptions> variants(unsigned turn) {
+std::vector<RunOptions> variants(const Scenario& s, unsigned turn) {
   auto exchanges = exchange_choices();
   const std::array<const char*, 3> mixes{"shared+put-inband", "put-flag+isend", "shared+sendrecv"};
   exchanges.emplace_back(mixes[turn % mixes.size()]);
@@ -98,6 +115,7 @@ std::vector<RunOptions> variants(unsigned turn) {
     const auto q = static_cast<unsigned>(e) + turn;
     RunOptions o;
     o.exchange = exchanges[e];
+    if (o.exchange != "return") o.cuts = cuts_for(s, q + turn / 2);
     o.threads = 1 + static_cast<int>((q + turn / 3) % 3);
     o.schedule = q % 2 == 0 ? Schedule::Overlap : Schedule::Sequential;
     o.search = (q / 2) % 2 == 0 ? ContactSearchKind::Cells : ContactSearchKind::AllPairs;
@@ -112,12 +130,12 @@ std::vector<RunOptions> variants(unsigned turn) {
 }
 
 std::string describe(const RunOptions& o) {
-  return fmt::format("{} ranks, exchange {}, {} threads, {}{}, {}, {}, delays up to {} s",
-                     num_ranks(), o.exchange, o.threads,
-                     o.schedule == Schedule::Overlap ? "overlap" : "sequential",
-                     o.progress == Progress::Thread ? " by a thread" : "",
-                     o.search == ContactSearchKind::Cells ? "cells" : "all-pairs", o.vector,
-                     o.hooks.max_delay_seconds);
+  return fmt::format(
+      "{} ranks, cuts '{}', exchange {}, {} threads, {}{}, {}, {}, delays up to {} s", num_ranks(),
+      o.cuts, o.exchange, o.threads, o.schedule == Schedule::Overlap ? "overlap" : "sequential",
+      o.progress == Progress::Thread ? " by a thread" : "",
+      o.search == ContactSearchKind::Cells ? "cells" : "all-pairs", o.vector,
+      o.hooks.max_delay_seconds);
 }
 
 /// The same particles in another order, with lists of another reach, which are made anew at other
@@ -125,7 +143,7 @@ std::string describe(const RunOptions& o) {
 void expect_same_bits_with_any_lists(const Scenario& s, const Outcome& reference, unsigned turn) {
   constexpr std::array<double, 3> kFactors{1.3, 1.0, 1.7};
   constexpr std::array<int, 4> kEvery{0, 1, 5, 3};
-  const auto options = variants(turn);
+  const auto options = variants(s, turn);
   for (unsigned q = 0; q < 2; ++q) {
     RunOptions o = options[(turn + 3 * q) % options.size()];
     o.hooks.rebuild_every = kEvery[(turn + q) % kEvery.size()];
@@ -143,7 +161,7 @@ void expect_same_bits_with_any_lists(const Scenario& s, const Outcome& reference
 Outcome expect_same_bits(const Scenario& s, unsigned turn) {
   const Outcome reference = reference_of(s);
   expect_same_bits_with_any_lists(s, reference, turn);
-  for (const RunOptions& o : variants(turn)) {
+  for (const RunOptions& o : variants(s, turn)) {
     const Outcome got = outcome_of(s, MPI_COMM_WORLD, o, 2);
     EXPECT_EQ(got.words, reference.words) << s.name << ": " << describe(o);
     if (s.must_migrate && num_ranks() > 1) {

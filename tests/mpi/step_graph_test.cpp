@@ -19,7 +19,7 @@ Scenario narrow_gas(int num_strips, bool is_periodic) {
     s.model.domain.hi[0] += 0.05;
     s.set = {};
     add_cloud(s.set, 2, {s.model.domain.lo, s.model.domain.hi, 0.1, 0.053, 2.0, 27});
-  } while (plan_strips(s.model, s.set).most_ranks() < num_strips);
+  } while (plan_cuts(s.model, s.set).room.most_strips() < num_strips);
   add_box_walls(s.model);
   shuffle_ids(s.set, 10);
   return s;

@@ -27,9 +27,9 @@ class Sample {
   /// @param returns  the published exchange: the lane on the right computes the pairs of the cut
   explicit Sample(bool returns = false) : world_(make_world()) {
     for (auto& lane : lanes_) lane = std::make_unique<Lane<Dim>>(world_);
-    lanes_[0]->brick.band(Side::Right).exists = true;
+    lanes_[0]->brick.add_link(Side::Right);
     lanes_[0]->brick.band(Side::Right).returns = returns;
-    lanes_[1]->brick.band(Side::Left).exists = true;
+    lanes_[1]->brick.add_link(Side::Left);
     lanes_[1]->brick.band(Side::Left).returns = returns;
   }
 
@@ -51,13 +51,13 @@ class Sample {
   template <class Change>
   void arrivals(bool to_right, Change&& change) {
     seed();
-    std::array<std::array<Bytes, 2>, 2> out;
     const int middle = cut(1) + (to_right ? -1 : 1);  // a slab changes its lane
-    lanes_[0]->rebuild.begin(0, middle, out[0][0], out[0][1]);
-    lanes_[1]->rebuild.begin(middle, cut(2), out[1][0], out[1][1]);
-    change(to_right ? out[0][1] : out[1][0]);
-    lanes_[0]->rebuild.absorb(out[1][0]);
-    lanes_[1]->rebuild.absorb(out[0][1]);
+    std::array<Bytes, 1> to_the_right, to_the_left;
+    lanes_[0]->rebuild.begin(placement(0, middle), to_the_right);
+    lanes_[1]->rebuild.begin(placement(1, middle), to_the_left);
+    change(to_right ? to_the_right[0] : to_the_left[0]);
+    lanes_[0]->rebuild.absorb(to_the_left[0]);
+    lanes_[1]->rebuild.absorb(to_the_right[0]);
     for (auto& lane : lanes_) lane->rebuild.order();
     exchange_ghosts(true, [](Bytes&) {});
     step();
@@ -101,10 +101,11 @@ class Sample {
   /// One lane goes on from a share that was checked.
   void restore(const CheckpointShare& share) {
     Lane<Dim> lane(world_);
-    barchan::restore(lane.brick, lane.rebuild, 0, world_.grid.num_slabs(), share);
+    barchan::restore(lane.brick, lane.rebuild,
+                     {box_of_slabs(world_.grid, 0, world_.grid.num_slabs()), {}}, share);
     lane.rebuild.order();
     lane.lists.list_owned();
-    lane.rebuild.take_ghosts({}, {});
+    lane.rebuild.take_ghosts({});
     lane.rebuild.restore_history();
     lane.lists.cut_chunks(64);
     for (int n = 0; n < 2; ++n) {
@@ -149,6 +150,13 @@ class Sample {
     return l == 0 ? 0 : (l == 1 ? world_.grid.num_slabs() / 2 : world_.grid.num_slabs());
   }
 
+  /// Of a lane where the second one begins at `middle`.
+  [[nodiscard]] Placement<Dim> placement(std::size_t l, int middle) const {
+    const CellBox<Dim> left = box_of_slabs(world_.grid, 0, middle),
+                       right = box_of_slabs(world_.grid, middle, world_.grid.num_slabs());
+    return l == 0 ? Placement<Dim>{left, {right}} : Placement<Dim>{right, {left}};
+  }
+
   void seed_only() {
     const auto all = test::random_particles(Dim, domain(), Dim == 2 ? 32 : 40, 0.5, 5);
     std::vector<BondData> bonds;
@@ -168,7 +176,7 @@ class Sample {
         if (slab >= cut(l) && slab < cut(l + 1)) mine.push_back(p);
       }
       const std::vector<char> bonded(mine.size(), 1);
-      lanes_[l]->rebuild.seed(cut(l), cut(l + 1), mine, bonds, lengths, bonded);
+      lanes_[l]->rebuild.seed(placement(l, cut(1)), mine, bonds, lengths, bonded);
       lanes_[l]->rebuild.order();
     }
   }
@@ -182,12 +190,13 @@ class Sample {
   template <class Change>
   void exchange_ghosts(bool to_right, Change&& change) {
     Bytes left, right;  // to the lane on that side
-    lanes_[0]->rebuild.pack_ghosts(Side::Right, right);
-    lanes_[1]->rebuild.pack_ghosts(Side::Left, left);
+    lanes_[0]->rebuild.pack_ghosts(0, right);
+    lanes_[1]->rebuild.pack_ghosts(0, left);
     change(to_right ? right : left);
     for (auto& lane : lanes_) lane->lists.list_owned();
-    lanes_[0]->rebuild.take_ghosts({}, left);
-    lanes_[1]->rebuild.take_ghosts(right, {});
+    const std::array<std::span<const std::byte>, 1> of_left{left}, of_right{right};
+    lanes_[0]->rebuild.take_ghosts(of_left);
+    lanes_[1]->rebuild.take_ghosts(of_right);
     for (auto& lane : lanes_) {
       lane->rebuild.restore_history();
       lane->lists.cut_chunks(64);
@@ -209,13 +218,12 @@ class Sample {
       lanes_[0]->step.finish_right_band(returned_forces());
     else
       lanes_[0]->step.finish_band(Side::Right);
-    Bytes right(halo_bytes(lanes_[0]->brick, Side::Right)),
-        left(halo_bytes(lanes_[1]->brick, Side::Left));
-    pack_halo(lanes_[0]->brick, Side::Right, right);
-    pack_halo(lanes_[1]->brick, Side::Left, left);
+    Bytes right(halo_bytes(lanes_[0]->brick, 0)), left(halo_bytes(lanes_[1]->brick, 0));
+    pack_halo(lanes_[0]->brick, 0, right);
+    pack_halo(lanes_[1]->brick, 0, left);
     change(to_right ? right : left);
-    unpack_halo(lanes_[0]->brick, Side::Right, left);
-    unpack_halo(lanes_[1]->brick, Side::Left, right);
+    unpack_halo(lanes_[0]->brick, 0, left);
+    unpack_halo(lanes_[1]->brick, 0, right);
   }
   void step() {
     step(true, [](Bytes&) {});

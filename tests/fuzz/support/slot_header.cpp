@@ -14,7 +14,7 @@ void read_slot_header(std::span<const std::byte> bytes) {
   std::memcpy(header, bytes.data(), std::min(bytes.size(), sizeof header));
   const MessageHeader read = read_header(header);
   if (fault_of(read, read.number, kRoom).empty() && read.bytes > kRoom) std::abort();
-  (void)describe({Channel::Bulk, Side::Left, read.number}, 3);
+  (void)describe({Channel::Bulk, 1, read.number}, 3);
 }
 
 }  // namespace barchan::fuzz

@@ -107,7 +107,7 @@ class Lanes {
                              ? 1
                              : 0);
       }
-      lanes_[l]->rebuild.seed(cuts_[l], cuts_[l + 1], mine, bonds, lengths, bonded);
+      lanes_[l]->rebuild.seed(placement(l), mine, bonds, lengths, bonded);
       lanes_[l]->rebuild.order();
     }
     exchange_ghosts();
@@ -116,7 +116,7 @@ class Lanes {
   /// Instead of seed. @param shares  one a lane
   void restore(std::span<const CheckpointShare> shares) {
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      barchan::restore(lanes_[l]->brick, lanes_[l]->rebuild, cuts_[l], cuts_[l + 1], shares[l]);
+      barchan::restore(lanes_[l]->brick, lanes_[l]->rebuild, placement(l), shares[l]);
       lanes_[l]->rebuild.order();
     }
     exchange_ghosts();
@@ -124,12 +124,10 @@ class Lanes {
 
   void rebuild(const std::vector<int>& cuts) {
     cuts_ = cuts;
-    std::vector<std::vector<std::byte>> left(lanes_.size()), right(lanes_.size());
-    for (std::size_t l = 0; l < lanes_.size(); ++l)
-      lanes_[l]->rebuild.begin(cuts_[l], cuts_[l + 1], left[l], right[l]);
+    Outboxes out = outboxes();
+    for (std::size_t l = 0; l < lanes_.size(); ++l) lanes_[l]->rebuild.begin(placement(l), out[l]);
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      if (lanes_[l]->brick.band(Side::Left).exists) lanes_[l]->rebuild.absorb(right[before(l)]);
-      if (lanes_[l]->brick.band(Side::Right).exists) lanes_[l]->rebuild.absorb(left[after(l)]);
+      for (const auto& message : arrivals(out, l)) lanes_[l]->rebuild.absorb(message);
     }
     for (auto& lane : lanes_) lane->rebuild.order();
     exchange_ghosts();
@@ -147,8 +145,14 @@ class Lanes {
       }
     }
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      if (lanes_[l]->brick.band(Side::Left).exists) send(before(l), Side::Right, l, Side::Left);
-      if (lanes_[l]->brick.band(Side::Right).exists) send(after(l), Side::Left, l, Side::Right);
+      const auto& links = lanes_[l]->brick.links;
+      for (std::size_t n = 0; n < links.size(); ++n) {
+        const std::size_t from = beside(l, links[n].side);
+        const int back = link_of(from, opposite(links[n].side));
+        std::vector<std::byte> message(halo_bytes(lanes_[from]->brick, back));
+        pack_halo(lanes_[from]->brick, back, message);
+        unpack_halo(lanes_[l]->brick, static_cast<int>(n), message);
+      }
     }
   }
 
@@ -188,38 +192,61 @@ class Lanes {
   Lane<Dim>& operator[](std::size_t l) { return *lanes_[l]; }
 
  private:
-  [[nodiscard]] std::size_t before(std::size_t l) const {
-    return (l + lanes_.size() - 1) % lanes_.size();
+  using Outboxes = std::vector<std::vector<std::vector<std::byte>>>;  ///< by lane and link
+
+  [[nodiscard]] std::size_t beside(std::size_t l, Side side) const {
+    return (l + (side == Side::Left ? lanes_.size() - 1 : 1)) % lanes_.size();
   }
-  [[nodiscard]] std::size_t after(std::size_t l) const { return (l + 1) % lanes_.size(); }
+  [[nodiscard]] int link_of(std::size_t l, Side side) const {
+    const auto& links = lanes_[l]->brick.links;
+    const auto at = std::ranges::find_if(links, [side](const auto& n) { return n.side == side; });
+    return static_cast<int>(at - links.begin());
+  }
 
   void place_band(std::size_t l) {
     const bool wraps = world_->grid.is_periodic(0) && lanes_.size() > 1;
-    Band &left = lanes_[l]->brick.band(Side::Left), &right = lanes_[l]->brick.band(Side::Right);
-    left.exists = l > 0 || wraps;
-    right.exists = l + 1 < lanes_.size() || wraps;
+    if (l > 0 || wraps) lanes_[l]->brick.add_link(Side::Left);
+    if (l + 1 < lanes_.size() || wraps) lanes_[l]->brick.add_link(Side::Right);
+  }
+
+  [[nodiscard]] CellBox<Dim> box(std::size_t l) const {
+    return box_of_slabs(world_->grid, cuts_[l], cuts_[l + 1]);
+  }
+  [[nodiscard]] Placement<Dim> placement(std::size_t l) const {
+    Placement<Dim> at{box(l), {}};
+    for (const auto& link : lanes_[l]->brick.links) at.beyond.push_back(box(beside(l, link.side)));
+    return at;
+  }
+
+  [[nodiscard]] Outboxes outboxes() const {
+    Outboxes out;
+    for (const auto& lane : lanes_) out.emplace_back(lane->brick.links.size());
+    return out;
+  }
+  /// What others have for this lane, by its links.
+  [[nodiscard]] std::vector<std::span<const std::byte>> arrivals(const Outboxes& out,
+                                                                 std::size_t l) const {
+    std::vector<std::span<const std::byte>> messages;
+    for (const auto& link : lanes_[l]->brick.links) {
+      const std::size_t from = beside(l, link.side);
+      messages.emplace_back(
+          out[from][static_cast<std::size_t>(link_of(from, opposite(link.side)))]);
+    }
+    return messages;
   }
 
   void exchange_ghosts() {
-    std::vector<std::vector<std::byte>> left(lanes_.size()), right(lanes_.size());
+    Outboxes out = outboxes();
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      if (lanes_[l]->brick.band(Side::Left).exists)
-        lanes_[l]->rebuild.pack_ghosts(Side::Left, left[l]);
-      if (lanes_[l]->brick.band(Side::Right).exists)
-        lanes_[l]->rebuild.pack_ghosts(Side::Right, right[l]);
+      for (std::size_t n = 0; n < out[l].size(); ++n)
+        lanes_[l]->rebuild.pack_ghosts(static_cast<int>(n), out[l][n]);
       lanes_[l]->lists.list_owned();
     }
     for (std::size_t l = 0; l < lanes_.size(); ++l) {
-      lanes_[l]->rebuild.take_ghosts(right[before(l)], left[after(l)]);
+      lanes_[l]->rebuild.take_ghosts(arrivals(out, l));
       lanes_[l]->rebuild.restore_history();
       lanes_[l]->lists.cut_chunks(64);
     }
-  }
-
-  void send(std::size_t from, Side from_side, std::size_t to, Side to_side) {
-    std::vector<std::byte> message(halo_bytes(lanes_[from]->brick, from_side));
-    pack_halo(lanes_[from]->brick, from_side, message);
-    unpack_halo(lanes_[to]->brick, to_side, message);
   }
 
   World<Dim>* world_;

@@ -9,10 +9,11 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+/// Of the middle one of three ranks.
 GraphShape two_lanes() {
-  GraphShape shape;
-  shape.lanes = {{3, true, true}, {1, true, true}};
-  shape.neighbours = {0, 2};
+  const LaneMap map({CutForm::Strips, {3, 1, 1}, {2, 1, 1}}, {});
+  GraphShape shape = graph_shape(CutForm::Strips, map.ties(1));
+  shape.lanes[0].num_chunks = 3;
   return shape;
 }
 
@@ -30,9 +31,9 @@ TEST(GraphDot, LeadsEveryLaneFromItsChunksOverItsBandsToTheEnd) {
 TEST(GraphDot, LetsMessagesReachTheLanesAtTheEndsOfTheStripOnly) {
   const std::string dot = cluster_of(two_lanes(), 1);
 
-  EXPECT_TRUE(has(dot, "r1_arrived_left -> r1_left0;"));
-  EXPECT_TRUE(has(dot, "r1_arrived_right -> r1_right1;"));
-  EXPECT_FALSE(has(dot, "r1_arrived_left -> r1_left1;"));
+  EXPECT_TRUE(has(dot, "r1_arrived0 -> r1_left0;"));
+  EXPECT_TRUE(has(dot, "r1_arrived1 -> r1_right1;"));
+  EXPECT_FALSE(has(dot, "r1_arrived0 -> r1_left1;"));
   EXPECT_TRUE(has(dot, "halo from rank 2 is in"));
 }
 
@@ -44,10 +45,9 @@ TEST(GraphDot, DrawsTheCutBetweenLanesAsAnEdgeIntoTheNextStep) {
 }
 
 TEST(GraphDot, HasNoArrivalWhereThereIsNoNeighbour) {
-  GraphShape shape = two_lanes();
-  shape.neighbours = {};
+  const LaneMap map({CutForm::Strips, {1, 1, 1}, {2, 1, 1}}, {});
 
-  EXPECT_FALSE(has(cluster_of(shape, 0), "arrived"));
+  EXPECT_FALSE(has(cluster_of(graph_shape(CutForm::Strips, map.ties(0)), 0), "arrived"));
 }
 
 TEST(GraphDot, WaitsForMessagesBeforeTheFirstChunkWhenSequential) {

@@ -1,5 +1,6 @@
 #include <barchan/tasks/step_tasks.hpp>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <set>
@@ -10,29 +11,44 @@
 namespace barchan {
 namespace {
 
-std::vector<GraphShape> all_shapes() {
-  std::vector<GraphShape> shapes;
-  for (const int num_lanes : {1, 2, 3}) {
-    for (const Neighbours beside : {Neighbours{}, {-1, 1}, {0, -1}, {0, 2}, {1, 1}}) {
-      for (const int way : {0, 1, 2, 3}) {
-        GraphShape shape;
-        shape.neighbours = beside;
-        shape.is_sequential = (way & 1) != 0;
-        shape.scheme = (way & 2) != 0 ? CutScheme::Returned : CutScheme::BothSides;
-        for (int l = 0; l < num_lanes; ++l)
-          shape.lanes.push_back(
-              {1, l > 0 || beside.has(Side::Left), l + 1 < num_lanes || beside.has(Side::Right)});
-        shapes.push_back(shape);
+struct Case {
+  GraphShape shape;
+  std::string words;
+};
+
+std::vector<Case> all_shapes() {
+  std::vector<CutShape> cuts;
+  for (const int ranks : {1, 2, 3}) {
+    for (const int lanes : {1, 2, 3})
+      cuts.push_back({CutForm::Strips, {ranks, 1, 1}, {lanes, 1, 1}});
+  }
+  cuts.push_back({CutForm::Bricks, {2, 2, 1}, {1, 1, 1}});
+  cuts.push_back({CutForm::Bricks, {2, 1, 1}, {1, 3, 1}});
+  cuts.push_back({CutForm::Bricks, {1, 1, 1}, {2, 1, 2}});
+  std::vector<Case> cases;
+  for (const CutShape& cut : cuts) {
+    for (const int way : {0, 1, 2, 3, 4, 5}) {
+      const bool is_periodic = (way & 1) != 0, returns = way >= 4;
+      if (returns && cut.form == CutForm::Bricks) continue;
+      const LaneMap map(cut, {is_periodic, is_periodic, false});
+      for (int rank = 0; rank < cut.num_ranks(); ++rank) {
+        Case c{graph_shape(cut.form, map.ties(rank)), ""};
+        c.shape.is_sequential = (way & 2) != 0;
+        c.shape.scheme = returns ? CutScheme::Returned : CutScheme::BothSides;
+        c.words =
+            fmt::format("{} {}, rank {} of {}, lanes {}{}{}{}",
+                        cut.form == CutForm::Strips ? "strips" : "bricks", cases.size(), rank,
+                        cut.num_ranks(), cut.num_lanes(), is_periodic ? ", periodic" : "",
+                        c.shape.is_sequential ? ", sequential" : "", returns ? ", returns" : "");
+        cases.push_back(c);
       }
     }
   }
-  return shapes;
+  return cases;
 }
 
-std::string words(const GraphShape& shape) {
-  return std::to_string(shape.num_lanes()) + " lanes, neighbours " +
-         std::to_string(shape.neighbours.left) + " and " + std::to_string(shape.neighbours.right) +
-         (shape.is_sequential ? ", sequential" : "") + (shape.returns() ? ", returns" : "");
+bool is_alone(const GraphShape& shape) {
+  return shape.num_links() == 0;
 }
 
 /// Tasks of three steps and what the list's edges say of them, directly or not.
@@ -82,6 +98,10 @@ class Orders {
   std::set<std::pair<int, int>> direct_;
 };
 
+StepTask band(int lane, Side side) {
+  return {side == Side::Left ? Work::LeftBand : Work::RightBand, lane};
+}
+
 std::vector<StepTask> tasks_of_lane(const GraphShape& shape, int l) {
   std::vector<StepTask> tasks{{Work::Chunks, l}};
   if (shape.has_band(l, Side::Left)) tasks.push_back({Work::LeftBand, l});
@@ -90,36 +110,53 @@ std::vector<StepTask> tasks_of_lane(const GraphShape& shape, int l) {
 }
 
 TEST(StepTasks, HaveNoCycle) {
-  for (const GraphShape& shape : all_shapes())
-    EXPECT_FALSE(Orders(step_tasks(shape)).has_cycle()) << words(shape);
+  for (const auto& [shape, words] : all_shapes())
+    EXPECT_FALSE(Orders(step_tasks(shape)).has_cycle()) << words;
 }
 
 TEST(StepTasks, WorkOnALaneOneAtATime) {
-  for (const GraphShape& shape : all_shapes()) {
+  for (const auto& [shape, words] : all_shapes()) {
     const Orders orders(step_tasks(shape));
     for (int l = 0; l < shape.num_lanes(); ++l) {
       const auto tasks = tasks_of_lane(shape, l);
       for (std::size_t n = 1; n < tasks.size(); ++n)
-        EXPECT_TRUE(orders.precedes(tasks[n - 1], 0, tasks[n], 0)) << words(shape);
-      EXPECT_TRUE(orders.precedes(tasks.back(), 0, tasks.front(), 1)) << words(shape);
+        EXPECT_TRUE(orders.precedes(tasks[n - 1], 0, tasks[n], 0)) << words;
+      EXPECT_TRUE(orders.precedes(tasks.back(), 0, tasks.front(), 1)) << words;
     }
   }
 }
 
 TEST(StepTasks, ReadBeyondACutInMemoryWhatTheStepBeforeHasWritten) {
-  for (const GraphShape& shape : all_shapes()) {
+  for (const auto& [shape, words] : all_shapes()) {
     const Orders orders(step_tasks(shape));
-    for (int l = 0; l + 1 < shape.num_lanes(); ++l) {
-      const StepTask right{Work::RightBand, l}, left{Work::LeftBand, l + 1};
-      EXPECT_TRUE(orders.precedes(right, 0, left, 1)) << words(shape);
-      EXPECT_TRUE(orders.precedes(left, 0, right, 1)) << words(shape);
+    for (int l = 0; l < shape.num_lanes(); ++l) {
+      for (const LaneTie& tie : shape.ties(l)) {
+        if (tie.link >= 0) continue;
+        const LaneTie& back = shape.ties(tie.lane)[static_cast<std::size_t>(tie.back)];
+        EXPECT_EQ(back.lane, l) << words;
+        EXPECT_TRUE(
+            orders.precedes(band(l, shape.sending_band(tie)), 0, band(tie.lane, back.side), 1))
+            << words;
+      }
+    }
+  }
+}
+
+TEST(StepTasks, WaitForEveryLinkInTheBandThatItIsOf) {
+  for (const auto& [shape, words] : all_shapes()) {
+    const Orders orders(step_tasks(shape));
+    for (int l = 0; l < shape.num_lanes(); ++l) {
+      for (const LaneTie& tie : shape.ties(l)) {
+        if (tie.link < 0) continue;
+        EXPECT_TRUE(orders.precedes({Work::Arrived, tie.link}, 0, band(l, tie.side), 0)) << words;
+      }
     }
   }
 }
 
 TEST(StepTasks, LetALaneBeAStepAheadOfTheLaneBesideIt) {
-  GraphShape shape;
-  shape.lanes = {{1, false, true}, {1, true, false}};
+  const LaneMap map({CutForm::Strips, {1, 1, 1}, {2, 1, 1}}, {});
+  const GraphShape shape = graph_shape(CutForm::Strips, map.ties(0));
 
   const Orders orders(step_tasks(shape));
 
@@ -128,34 +165,33 @@ TEST(StepTasks, LetALaneBeAStepAheadOfTheLaneBesideIt) {
 }
 
 TEST(StepTasks, AwaitHalosBehindAllChunksOrBeforeThem) {
-  for (const GraphShape& shape : all_shapes()) {
-    if (shape.neighbours.left < 0 && shape.neighbours.right < 0) continue;
+  for (const auto& [shape, words] : all_shapes()) {
+    if (is_alone(shape)) continue;
     const Orders orders(step_tasks(shape));
     for (int l = 0; l < shape.num_lanes(); ++l) {
       const StepTask chunks{Work::Chunks, l}, await{Work::Await};
-      EXPECT_EQ(orders.precedes(await, 0, chunks, 0), shape.is_sequential) << words(shape);
-      EXPECT_EQ(orders.precedes(chunks, 0, await, 0), !shape.is_sequential) << words(shape);
+      EXPECT_EQ(orders.precedes(await, 0, chunks, 0), shape.is_sequential) << words;
+      EXPECT_EQ(orders.precedes(chunks, 0, await, 0), !shape.is_sequential) << words;
     }
   }
 }
 
 TEST(StepTasks, AwaitTheAnswerOfTheRightNeighbourBehindTheLeftBand) {
-  for (const GraphShape& shape : all_shapes()) {
-    if (!shape.returns() || shape.neighbours.left < 0 || shape.neighbours.right < 0) continue;
+  for (const auto& [shape, words] : all_shapes()) {
+    if (!shape.returns() || !shape.awaits(Side::Left) || !shape.awaits(Side::Right)) continue;
     const Orders orders(step_tasks(shape));
 
-    EXPECT_TRUE(orders.precedes({Work::LeftBand, 0}, 0, {Work::AwaitRight}, 0)) << words(shape);
+    EXPECT_TRUE(orders.precedes({Work::LeftBand, 0}, 0, {Work::AwaitRight}, 0)) << words;
   }
 }
 
 TEST(StepTasks, GoOnByThemselvesOnlyWhereNoRankIsBeside) {
-  for (const GraphShape& shape : all_shapes()) {
+  for (const auto& [shape, words] : all_shapes()) {
     bool goes_on = false;
     for (const StepArrow& a : step_tasks(shape).arrows)
       goes_on = goes_on || (a.way == Way::Message && a.is_next);
-    const bool is_alone = shape.neighbours.left < 0 && shape.neighbours.right < 0;
 
-    EXPECT_EQ(goes_on, is_alone && shape.num_lanes() > 1) << words(shape);
+    EXPECT_EQ(goes_on, is_alone(shape) && shape.num_lanes() > 1) << words;
   }
 }
 

@@ -26,31 +26,28 @@ struct Case {
   }
 };
 
-TEST(StripPlan, CutsSlabsNoNarrowerThanTheReach) {
+TEST(CutPlan, HasCellsNoNarrowerThanTheReach) {
   const Case c;
 
-  const StripPlan plan = plan_strips(c.model, c.set);
+  const CutPlan plan = plan_cuts(c.model, c.set);
 
-  EXPECT_GE(plan.slab_width, search_reach(c.model, c.set, 0.1));
-  EXPECT_EQ(plan.slab_counts.size(), 16U);
-  EXPECT_EQ(plan.most_ranks(), 8);
+  EXPECT_GE(plan.cell[0], search_reach(c.model, c.set, 0.1));
+  EXPECT_EQ(plan.room.cells[0], 16);
+  EXPECT_EQ(plan.room.most_strips(), 8);
 }
 
-TEST(StripPlan, GivesEveryParticleToOneStrip) {
+TEST(CutPlan, GivesEveryParticleToOneRank) {
   const Case c;
-  const StripPlan plan = plan_strips(c.model, c.set);
+  const CutPlan plan = plan_cuts(c.model, c.set);
 
-  for (int ranks = 1; ranks <= plan.most_ranks(); ++ranks) {
-    const auto counts = plan.strip_counts(ranks);
-    EXPECT_EQ(counts.size(), static_cast<std::size_t>(ranks));
-    EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}), 160);
+  for (int ranks = 1; ranks <= plan.room.most_strips(); ++ranks) {
+    for (const CutShape& shape : {CutShape{CutForm::Strips, {ranks, 1, 1}, {}},
+                                  CutShape{CutForm::Bricks, {ranks, 2, 1}, {}}}) {
+      const auto counts = plan.rank_counts(shape);
+      EXPECT_EQ(counts.size(), static_cast<std::size_t>(shape.num_ranks()));
+      EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), std::int64_t{0}), 160);
+    }
   }
-}
-
-TEST(StripPlan, SaysHowManyRanksFit) {
-  const Case c;
-
-  EXPECT_THROW((void)plan_strips(c.model, c.set).strip_counts(9), InputError);
 }
 
 TEST(SearchReach, LeavesRoomForALongBondToStretch) {

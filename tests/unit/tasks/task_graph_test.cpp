@@ -13,11 +13,12 @@
 namespace barchan {
 namespace {
 
-GraphShape ring_of_lanes(int num_lanes, Neighbours beside) {
-  GraphShape shape;
-  shape.neighbours = beside;
-  for (int l = 0; l < num_lanes; ++l) shape.lanes.push_back({1, true, true});
-  return shape;
+/// Of the middle one of three ranks, or of a rank alone.
+GraphShape shape_of(CutForm form, int num_lanes, bool is_alone) {
+  const bool is_strips = form == CutForm::Strips;
+  CutShape cuts{form, {is_alone ? 1 : 3, 1, 1}, {1, 1, 1}};
+  cuts.lanes[is_strips ? 0 : 1] = num_lanes;
+  return graph_shape(form, LaneMap(cuts, {true, false, false}).ties(is_alone ? 0 : 1));
 }
 
 /// Runs steps, and notes of each task in each step when it began and ended.
@@ -38,9 +39,8 @@ class Recorder {
     const int parity = done_ % 2;
     until_ = done_ + num_steps;
     graph_.run([&] {
-      for (const Work work : {Work::ArrivedLeft, Work::ArrivedRight}) {
-        if (graph_.list().find({work}) >= 0) graph_.put(graph_.list().find({work}), parity);
-      }
+      for (int link = 0; link < shape_.num_links(); ++link)
+        graph_.put(graph_.list().find({Work::Arrived, link}), parity);
       graph_.put(graph_.list().find({Work::Begin}), parity);
     });
     done_ = until_;
@@ -95,9 +95,9 @@ void expect_edges_kept(const Recorder& recorder, int num_steps) {
 
 TEST(TaskGraph, DoesEveryTaskOnceAStepBehindWhatPrecedesIt) {
   for (const int threads : {1, 3}) {
-    for (const Neighbours beside : {Neighbours{0, 2}, {-1, 1}}) {
+    for (const CutForm form : {CutForm::Strips, CutForm::Bricks}) {
       for (const int lanes : {1, 3}) {
-        Recorder recorder(ring_of_lanes(lanes, beside), threads);
+        Recorder recorder(shape_of(form, lanes, false), threads);
 
         for (int step = 0; step < 50; ++step) recorder.run(1);
 
@@ -109,18 +109,20 @@ TEST(TaskGraph, DoesEveryTaskOnceAStepBehindWhatPrecedesIt) {
 
 TEST(TaskGraph, KeepsTheOrderWhereARunIsOfSeveralSteps) {
   for (const int threads : {1, 2, 3}) {
-    Recorder recorder(ring_of_lanes(3, {}), threads);
+    for (const CutForm form : {CutForm::Strips, CutForm::Bricks}) {
+      Recorder recorder(shape_of(form, 3, true), threads);
 
-    recorder.run(1);
-    recorder.run(40);
-    recorder.run(9);
+      recorder.run(1);
+      recorder.run(40);
+      recorder.run(9);
 
-    expect_edges_kept(recorder, 50);
+      expect_edges_kept(recorder, 50);
+    }
   }
 }
 
 TEST(TaskGraph, ThrowsWhatATaskThrew) {
-  TaskGraph graph(step_tasks(ring_of_lanes(2, {})), 2, [](const StepTask& task, int) {
+  TaskGraph graph(step_tasks(shape_of(CutForm::Strips, 2, true)), 2, [](const StepTask& task, int) {
     if (task.work == Work::LeftBand) throw std::runtime_error("left");
   });
 
@@ -129,7 +131,7 @@ TEST(TaskGraph, ThrowsWhatATaskThrew) {
 }
 
 TEST(TaskGraph, RunsAFunctionForEachNumber) {
-  TaskGraph graph(step_tasks(ring_of_lanes(2, {})), 2, [](const StepTask&, int) {});
+  TaskGraph graph(step_tasks(shape_of(CutForm::Strips, 2, true)), 2, [](const StepTask&, int) {});
   std::array<std::atomic<int>, 5> calls{};
 
   graph.for_each(5, [&](int n) { ++calls[static_cast<std::size_t>(n)]; });

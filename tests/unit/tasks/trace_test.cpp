@@ -46,9 +46,10 @@ TEST_F(TraceFile, HoldsSlicesWithNameStepAndDuration) {
 }
 
 TEST_F(TraceFile, GivesBothEndsOfAMessageTheSameName) {
-  Trace trace(communicator_, {0, 0}, 1, 16);  // both neighbours are rank 0 itself
-  trace.sent(Side::Right, 4, now_ns());
-  trace.noticed(Side::Left, 4, now_ns());
+  // Both neighbours are rank 0 itself.
+  Trace trace(communicator_, {{{0, kRightLink}, {0, kLeftLink}}}, 1, 16);
+  trace.sent(kRightLink, 4, now_ns());
+  trace.noticed(kLeftLink, 4, now_ns());
 
   const auto events = written(trace);
 

@@ -20,17 +20,17 @@ std::string text_of(std::span<const std::byte> bytes) {
 
 TEST(Tape, PlaysEveryChannelInTheOrderOfItsRecords) {
   Tape tape;
-  tape.record(Tape::HaloLeft, bytes_of("one"));
-  tape.record(Tape::HaloRight, bytes_of("other"));
-  tape.record(Tape::HaloLeft, bytes_of(""));
-  tape.record(Tape::HaloLeft, bytes_of("three"));
+  tape.record(Tape::halo_channel(0), bytes_of("one"));
+  tape.record(Tape::halo_channel(1), bytes_of("other"));
+  tape.record(Tape::halo_channel(0), bytes_of(""));
+  tape.record(Tape::halo_channel(0), bytes_of("three"));
 
   tape.rewind();
 
-  EXPECT_EQ(text_of(tape.next(Tape::HaloLeft)), "one");
-  EXPECT_EQ(text_of(tape.next(Tape::HaloLeft)), "");
-  EXPECT_EQ(text_of(tape.next(Tape::HaloRight)), "other");
-  EXPECT_EQ(text_of(tape.next(Tape::HaloLeft)), "three");
+  EXPECT_EQ(text_of(tape.next(Tape::halo_channel(0))), "one");
+  EXPECT_EQ(text_of(tape.next(Tape::halo_channel(0))), "");
+  EXPECT_EQ(text_of(tape.next(Tape::halo_channel(1))), "other");
+  EXPECT_EQ(text_of(tape.next(Tape::halo_channel(0))), "three");
   EXPECT_EQ(tape.bytes(), 13U);
 }
 
@@ -38,12 +38,12 @@ TEST(Tape, KeepsRecordsWhereTheyAreWhileItGrows) {
   Tape tape;
   const std::string large(700000, 'x');
   for (int n = 0; n < 5; ++n) {
-    tape.record(Tape::BulkLeft, bytes_of(large + std::to_string(n)));
+    tape.record(Tape::bulk_channel(0), bytes_of(large + std::to_string(n)));
   }
 
   tape.rewind();
 
-  for (int n = 0; n < 5; ++n) EXPECT_EQ(text_of(tape.next(Tape::BulkLeft)).back(), '0' + n);
+  for (int n = 0; n < 5; ++n) EXPECT_EQ(text_of(tape.next(Tape::bulk_channel(0))).back(), '0' + n);
 }
 
 TEST(Tape, GivesTheSameChannelsAgainWhenItPlays) {

@@ -47,7 +47,7 @@ TEST(Message, AcceptsNoRandomBytes) {
 }
 
 TEST(Message, NamesItselfForAReport) {
-  EXPECT_EQ(describe({Channel::Halo, Side::Left, 17}, 2), "halo message 17 from rank 2 (left)");
+  EXPECT_EQ(describe({Channel::Halo, 3, 17}, 2), "halo message 17 from rank 2 (link 3)");
 }
 
 }  // namespace

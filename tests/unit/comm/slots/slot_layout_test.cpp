@@ -9,11 +9,13 @@
 namespace barchan {
 namespace {
 
+constexpr int kLinks = 3;
+
 std::vector<MessageKey> every_slot() {
   std::vector<MessageKey> keys;
   for (const Channel channel : {Channel::Halo, Channel::Bulk}) {
-    for (const Side side : {Side::Left, Side::Right}) {
-      for (const std::uint64_t number : {1U, 2U}) keys.push_back({channel, side, number});
+    for (int link = 0; link < kLinks; ++link) {
+      for (const std::uint64_t number : {1U, 2U}) keys.push_back({channel, link, number});
     }
   }
   return keys;
@@ -21,7 +23,7 @@ std::vector<MessageKey> every_slot() {
 
 TEST(SlotLayout, KeepsWordsAndSlotsApartAndOnCacheLines) {
   for (const std::size_t halo : {0U, 1U, 64U, 1000U}) {
-    const SlotLayout layout{{halo, 777}};
+    const SlotLayout layout{{halo, 777}, kLinks};
     std::vector<std::pair<std::size_t, std::size_t>> ranges;  // begin, end
     for (const MessageKey& key : every_slot()) {
       ranges.emplace_back(layout.word(key), layout.word(key) + SlotLayout::kWordBytes);
@@ -39,12 +41,10 @@ TEST(SlotLayout, KeepsWordsAndSlotsApartAndOnCacheLines) {
 }
 
 TEST(SlotLayout, TakesTurnsBetweenTwoSlots) {
-  const SlotLayout layout{{100, 100}};
+  const SlotLayout layout{{100, 100}, kLinks};
 
-  EXPECT_NE(layout.slot({Channel::Halo, Side::Left, 5}),
-            layout.slot({Channel::Halo, Side::Left, 6}));
-  EXPECT_EQ(layout.slot({Channel::Halo, Side::Left, 5}),
-            layout.slot({Channel::Halo, Side::Left, 7}));
+  EXPECT_NE(layout.slot({Channel::Halo, 1, 5}), layout.slot({Channel::Halo, 1, 6}));
+  EXPECT_EQ(layout.slot({Channel::Halo, 1, 5}), layout.slot({Channel::Halo, 1, 7}));
 }
 
 TEST(SlotLayout, HasRoomForHeaderPayloadAndTrailer) {
@@ -52,9 +52,11 @@ TEST(SlotLayout, HasRoomForHeaderPayloadAndTrailer) {
   EXPECT_GE(slot_bytes(64), kHeaderBytes + 64 + 8);
 }
 
-TEST(SlotLayout, WhatGoesRightArrivesLeft) {
-  EXPECT_EQ(SlotLayout::at_receiver({Channel::Bulk, Side::Right, 3}).side, Side::Left);
-  EXPECT_EQ(SlotLayout::at_receiver({Channel::Bulk, Side::Right, 3}).channel, Channel::Bulk);
+TEST(SlotLayout, PutsALinkWhereItIsWhateverTheNumberOfLinks) {
+  const SlotLayout few{{100, 200}, 3}, many{{100, 200}, 26};
+
+  EXPECT_EQ(few.slot({Channel::Bulk, 2, 1}), many.slot({Channel::Bulk, 2, 1}));
+  EXPECT_EQ(few.word({Channel::Bulk, 2, 1}), many.word({Channel::Bulk, 2, 1}));
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ TEST(LaneMessages, BringArrivalsAcrossWithHistoryAndBonds) {
   std::vector<std::byte> message;
   encode(a_migration(world), message);
 
-  Migration<2> came = decode_migration(message, world, 0, kSlabs);
+  Migration<2> came = decode_migration(message, world, box_of_slabs(world.grid, 0, kSlabs));
 
   EXPECT_EQ(id(came.particles.at(0)), 7);
   EXPECT_EQ(came.contacts.numbers.at(0), 0.25);
@@ -67,7 +67,8 @@ TEST(LaneMessages, RefuseWhatWouldLeaveAnArray) {
     spoil(m);
     std::vector<std::byte> message;
     encode(m, message);
-    EXPECT_THROW((void)decode_migration(message, world, 0, kSlabs), RunError);
+    EXPECT_THROW((void)decode_migration(message, world, box_of_slabs(world.grid, 0, kSlabs)),
+                 RunError);
   };
   refuses([](Migration<2>& m) { id(m.particles[0]) = 0; });
   refuses([](Migration<2>& m) { key(m.particles[0]) = -1; });
@@ -90,43 +91,45 @@ TEST(LaneMessages, RefuseEveryCut) {
   std::vector<std::byte> message;
   encode(a_migration(world), message);
   for (std::size_t size = 0; size < message.size(); ++size) {
-    EXPECT_THROW((void)decode_migration(std::span(message).first(size), world, 0, kSlabs), RunError)
+    EXPECT_THROW((void)decode_migration(std::span(message).first(size), world,
+                                        box_of_slabs(world.grid, 0, kSlabs)),
+                 RunError)
         << size;
   }
   message.emplace_back();
-  EXPECT_THROW((void)decode_migration(message, world, 0, kSlabs), RunError);
+  EXPECT_THROW((void)decode_migration(message, world, box_of_slabs(world.grid, 0, kSlabs)),
+               RunError);
 }
 
-TEST(LaneMessages, TellAParticleThatJumpedOverAStrip) {
+TEST(LaneMessages, RefuseAParticleOfAnotherBrick) {
   const World<2> world = world_with_a_wall_and_a_bond();
   std::vector<std::byte> message;
   encode(a_migration(world), message);
   try {
-    (void)decode_migration(message, world, 0, 2);
+    (void)decode_migration(message, world, box_of_slabs(world.grid, 0, 2));
     FAIL();
   } catch (const RunError& e) {
-    EXPECT_NE(std::string(e.what()).find("particle 7 jumped over a whole strip"),
-              std::string::npos);
+    EXPECT_NE(std::string(e.what()).find("particle 7 belongs to another brick"), std::string::npos);
   }
 }
 
-TEST(LaneMessages, RefuseGhostsOutOfOrderOrOfAnotherSlab) {
+TEST(LaneMessages, RefuseGhostsOutOfOrderOrOfOtherCells) {
   const World<2> world = world_with_a_wall_and_a_bond();
   RowRecord<2> first = a_migration(world).particles[0], second = first;
   id(second) = 8;
   first.values<&Store::motion>()[1] -= 1.0;  // the cell before
   key(first) = world.grid.key(first.values<&Store::motion>());
   ASSERT_GT(key(second), key(first));
-  const int slab = static_cast<int>(key(first) / world.grid.slab_size());
-  const auto decode = [&world](const std::vector<RowRecord<2>>& ghosts, int of_slab) {
+  const CellAt<2> at = cell_of_key(world.grid, key(first));
+  const auto decode = [&](const std::vector<RowRecord<2>>& ghosts, int of_slab) {
     std::vector<std::byte> message;
     ByteWriter(message).put_counted(ghosts);
-    return decode_ghosts(message, world, of_slab).size();
+    return decode_ghosts(message, world, CellRegion<2>{{{{of_slab}, {at[1], at[1] + 1}}}}).size();
   };
 
-  EXPECT_EQ(decode({first, second}, slab), 2U);
-  EXPECT_THROW(decode({second, first}, slab), RunError);
-  EXPECT_THROW(decode({first}, slab + 1), RunError);
+  EXPECT_EQ(decode({first, second}, at[0]), 2U);
+  EXPECT_THROW(decode({second, first}, at[0]), RunError);
+  EXPECT_THROW(decode({first}, at[0] + 1), RunError);
 }
 
 }  // namespace

@@ -31,18 +31,17 @@ TEST(CellIndex, TellsTheRowsOfEveryCell) {
   domain.hi = Vec3(5.5, 4.5, 0.0);
   const Grid<2> grid(domain, 1.0, 60);
   const auto store = keyed_store(grid, domain, 60);
-  CellIndex cells;
+  CellIndex<2> cells;
 
-  cells.index(grid, store, {0, 60}, 0, grid.num_slabs());
+  cells.cover(grid, box_of_slabs(grid, 0, grid.num_slabs()));
+  cells.add(grid, store, {0, 60});
 
   for (std::int64_t key = 0; key < grid.num_slabs() * grid.slab_size(); ++key) {
-    const Rows rows = cells.cells(key, key + 1);
+    const Rows rows = cells.rows(cell_of_key(grid, key));
     EXPECT_EQ(rows.end - rows.begin, std::count(store.key.begin(), store.key.begin() + 60, key));
     for (std::int32_t i = rows.begin; i < rows.end; ++i)
       EXPECT_EQ(store.key[static_cast<std::size_t>(i)], key);
   }
-  EXPECT_EQ(cells.first_row(3, grid.slab_size()),
-            cells.cells(3 * grid.slab_size(), 3 * grid.slab_size() + 1).begin);
 }
 
 /// Keys of the 3^Dim cells around a cell, from coordinates.
@@ -72,12 +71,13 @@ template <int Dim>
 void expect_neighbourhoods(const Domain& domain) {
   const Grid<Dim> grid(domain, 1.0, 300);
   const auto store = keyed_store(grid, domain, 300);
-  CellIndex cells;
-  cells.index(grid, store, {0, 300}, 0, grid.num_slabs());
+  CellIndex<Dim> cells;
+  cells.cover(grid, box_of_slabs(grid, 0, grid.num_slabs()));
+  cells.add(grid, store, {0, 300});
   Neighbourhood<Dim> around;
   for (std::int64_t key = 0; key < grid.num_slabs() * grid.slab_size(); ++key) {
-    for (const std::int64_t after : {std::int64_t{-1}, key}) {
-      around.collect(grid, cells, key, -1, 1, after);
+    for (const Rows wanted : {Rows{0, 300}, Rows{120, 300}, Rows{40, 90}}) {
+      around.collect(cells, cell_of_key(grid, key), wanted);
 
       std::vector<std::int32_t> found, expected;
       for (int q = 0; q < around.count; ++q) {
@@ -85,11 +85,10 @@ void expect_neighbourhoods(const Domain& domain) {
         for (std::int32_t i = rows.begin; i < rows.end; ++i) found.push_back(i);
       }
       const auto keys = cells_around(grid, key);
-      for (std::int32_t i = 0; i < 300; ++i) {
-        const auto own = store.key[static_cast<std::size_t>(i)];
-        if (keys.contains(own) && own > after) expected.push_back(i);
+      for (std::int32_t i = wanted.begin; i < wanted.end; ++i) {
+        if (keys.contains(store.key[static_cast<std::size_t>(i)])) expected.push_back(i);
       }
-      ASSERT_EQ(found, expected) << "cell " << key << " after " << after;
+      ASSERT_EQ(found, expected) << "cell " << key << ", rows from " << wanted.begin;
     }
   }
 }

@@ -1,0 +1,26 @@
+#include <barchan/core/brick/brick.hpp>
+
+namespace barchan {
+
+template <int Dim>
+void Brick<Dim>::place(const Placement<Dim>& at) {
+  const Grid<Dim>& grid = world->grid;
+  box = at.box;
+  for (std::size_t n = 0; n < links.size(); ++n) {
+    BrickLink<Dim>& link = links[n];
+    link.beyond = at.beyond[n];
+    link.sends = cells_beside(grid, box, link.beyond);
+    link.takes = cells_beside(grid, link.beyond, box);
+    if (form == CutForm::Bricks) continue;
+    const bool is_left = link.side == Side::Left;
+    const int num_slabs = grid.num_slabs();
+    link.sends.lists[0] = {is_left ? box.lo[0] : box.hi[0] - 1};
+    link.takes.lists[0] = {is_left ? (box.lo[0] + num_slabs - 1) % num_slabs
+                                   : box.hi[0] % num_slabs};
+  }
+}
+
+template struct Brick<2>;
+template struct Brick<3>;
+
+}  // namespace barchan

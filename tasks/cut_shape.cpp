@@ -1,0 +1,244 @@
+#include <barchan/tasks/cut_shape.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <barchan/comm/topology/strips.hpp>
+#include <barchan/core/base/error.hpp>
+
+namespace barchan {
+namespace {
+
+// In steps of a particle (docs/measurements/performance.md).
+constexpr double kGhost = 0.35;     ///< a ghost and its pairs
+constexpr double kMessage = 100.0;  ///< to another rank
+constexpr double kHandOver = 10.0;  ///< to a lane of the same rank
+/// Strips hide a halo behind the other cut's work, and have fewer messages.
+constexpr double kClearlyBetter = 0.9;
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
+using Shape = std::array<int, 3>;
+
+/// All ways to write a number as a product along the axes that there are.
+std::vector<Shape> products(int number, int dimension) {
+  std::vector<Shape> found;
+  for (int a = 1; a <= number; ++a) {
+    if (number % a != 0) continue;
+    for (int b = 1; b <= number / a; ++b) {
+      if (number / a % b != 0) continue;
+      const int c = number / a / b;
+      if (dimension == 3 || c == 1) found.push_back({a, b, c});
+    }
+  }
+  return found;
+}
+
+bool fits(const CutShape& shape, const CutRoom& room) {
+  if (shape.form == CutForm::Strips) return shape.along(0) <= room.most_strips();
+  for (int k = 0; k < 3; ++k) {
+    if (shape.along(k) > room.cells[static_cast<std::size_t>(k)]) return false;
+  }
+  return true;
+}
+
+struct Choice {
+  CutShape shape;
+  double step = kNever;
+
+  void take(const CutShape& other, const CutRoom& room) {
+    if (!fits(other, room)) return;
+    const double its = predicted_step(other, room);
+    if (its < step) shape = other, step = its;
+  }
+};
+
+/// As many lanes as threads, where they fit, else fewer.
+Choice best_strips(const CutRequest& request, const CutRoom& room) {
+  Choice best;
+  const int fit = room.most_strips() / request.ranks;
+  if (fit < 1) return best;
+  best.take({CutForm::Strips, {request.ranks, 1, 1}, {std::clamp(request.threads, 1, fit), 1, 1}},
+            room);
+  return best;
+}
+
+Choice best_bricks(const CutRequest& request, const CutRoom& room, std::span<const Shape> ranks) {
+  Choice best;
+  for (int threads = request.threads; threads >= 1 && best.step == kNever; --threads) {
+    for (const Shape& of_ranks : ranks) {
+      for (const Shape& lanes : products(threads, room.dimension))
+        best.take({CutForm::Bricks, of_ranks, lanes}, room);
+    }
+  }
+  return best;
+}
+
+std::string in_words(const Shape& shape, int dimension) {
+  return dimension == 3 ? fmt::format("[{}, {}, {}]", shape[0], shape[1], shape[2])
+                        : fmt::format("[{}, {}]", shape[0], shape[1]);
+}
+
+/// By axes of the deck, into those of the grid.
+Shape in_grid_order(const Shape& xyz, const CutRoom& room) {
+  Shape shape{1, 1, 1};
+  for (std::size_t k = 0; k < 3; ++k) shape[k] = xyz[static_cast<std::size_t>(room.axes[k])];
+  return shape;
+}
+
+/// What a user may do instead.
+std::string remedy(const CutRequest& request, const CutRoom& room) {
+  const Choice bricks =
+      best_bricks({{}, request.ranks, 1, false, {}}, room, products(request.ranks, room.dimension));
+  if (bricks.step < kNever && !request.needs_strips)
+    return fmt::format("for {} ranks cuts = {} would fit, or \"auto\"", request.ranks,
+                       in_words(along_xyz(bricks.shape.ranks, room), room.dimension));
+  const int most = room.most_strips();
+  if (request.needs_strips && request.ranks <= most)
+    return "use cuts = \"strips\", or another exchange";
+  return fmt::format("use at most {} rank{}{}", most, most == 1 ? "" : "s",
+                     request.needs_strips ? ", or another exchange" : "");
+}
+
+[[noreturn]] void refuse(const CutRequest& request, const CutRoom& room, const std::string& what) {
+  const SourcePlace& place = request.wish.place.file.empty() ? request.place : request.wish.place;
+  throw InputError(place, what, remedy(request, room));
+}
+
+CutShape as_asked(const CutRequest& request, const CutRoom& room) {
+  const Shape& xyz = request.wish.bricks;
+  const std::string words = in_words(xyz, room.dimension);
+  if (room.dimension == 2 && xyz[2] != 1)
+    refuse(request, room, fmt::format("cuts along z, {}, of a run in two dimensions", xyz[2]));
+  const int product = xyz[0] * xyz[1] * xyz[2];
+  if (product != request.ranks)
+    refuse(request, room,
+           fmt::format("cuts = {} make {} brick{} for {} rank{}", words, product,
+                       product == 1 ? "" : "s", request.ranks, request.ranks == 1 ? "" : "s"));
+  const Shape ranks = in_grid_order(xyz, room);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (ranks[k] <= room.cells[k]) continue;
+    refuse(
+        request, room,
+        fmt::format("cuts = {}: {} bricks along {}, where the domain has {} cell{}", words,
+                    ranks[k], "xyz"[room.axes[k]], room.cells[k], room.cells[k] == 1 ? "" : "s"));
+  }
+  // Along the strip axis alone they are strips, where these fit.
+  if (ranks[1] == 1 && ranks[2] == 1) {
+    const Choice strips = best_strips(request, room);
+    if (strips.step < kNever && strips.shape.num_lanes() == request.threads) return strips.shape;
+  }
+  if (request.needs_strips)
+    refuse(request, room,
+           fmt::format("exchange 'return' works on strips, not with cuts = {}", words));
+  return best_bricks(request, room, std::span(&ranks, 1)).shape;
+}
+
+}  // namespace
+
+int CutRoom::most_strips() const {
+  return max_strips(cells[0], kMinSlabs);
+}
+
+double CutRoom::num_cells() const {
+  return static_cast<double>(cells[0]) * static_cast<double>(cells[1]) *
+         static_cast<double>(cells[2]);
+}
+
+template <int Dim>
+CutRoom room_of(const Grid<Dim>& grid, std::int64_t num_particles) {
+  CutRoom room;
+  room.dimension = Dim;
+  room.num_particles = num_particles;
+  for (int axis = 0; axis < Dim; ++axis) {
+    const auto k = static_cast<std::size_t>(axis);
+    room.cells[k] = grid.cells(axis);
+    room.axes[k] = grid.axis(axis);
+    room.is_periodic[k] = grid.is_periodic(axis);
+  }
+  return room;
+}
+
+/// Particles lie as densely everywhere, and cuts on faces of cells.
+double predicted_step(const CutShape& shape, const CutRoom& room) {
+  const double per_cell = static_cast<double>(room.num_particles) / room.num_cells();
+  double own = 1.0, with_ghosts = 1.0, beside = 1.0, beside_in_rank = 1.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const int along = shape.along(static_cast<int>(k));
+    const int thick = (room.cells[k] + along - 1) / along;
+    const auto neighbours = [&](int n, bool is_ring) {
+      return std::min(n - 1, is_ring || n > 2 ? 2 : 1);
+    };
+    const int cuts = along == 1 ? 0 : (along == 2 && !room.is_periodic[k] ? 1 : 2);
+    own *= thick;
+    with_ghosts *= thick + cuts;
+    beside *= 1 + neighbours(along, room.is_periodic[k]);
+    beside_in_rank *= 1 + neighbours(shape.lanes[k], false);
+  }
+  const double remote = shape.num_ranks() == 1 ? 0.0 : std::max(0.0, beside - beside_in_rank);
+  return per_cell * (own + kGhost * (with_ghosts - own)) + kMessage * remote +
+         kHandOver * (beside - 1.0 - remote);
+}
+
+CutShape choose_cuts(const CutRequest& request, const CutRoom& room) {
+  if (request.wish.kind == CutWish::Kind::Bricks) return as_asked(request, room);
+  const Choice strips = best_strips(request, room);
+  if (request.wish.kind == CutWish::Kind::Strips || request.needs_strips) {
+    if (strips.step < kNever) return strips.shape;
+    const int most = room.most_strips();
+    refuse(request, room,
+           fmt::format("{} ranks as strips of {} cells, of which {} fit{} into {} cells along {}",
+                       request.ranks, kMinSlabs, most, most == 1 ? "s" : "", room.cells[0],
+                       "xyz"[room.axes[0]]));
+  }
+  const Choice bricks = best_bricks(request, room, products(request.ranks, room.dimension));
+  if (strips.step == kNever && bricks.step == kNever)
+    refuse(request, room,
+           fmt::format("{} ranks for a domain of {} x {} x {} cells", request.ranks,
+                       along_xyz(room.cells, room)[0], along_xyz(room.cells, room)[1],
+                       along_xyz(room.cells, room)[2]));
+  return bricks.step < kClearlyBetter * strips.step ? bricks.shape : strips.shape;
+}
+
+std::array<int, 3> along_xyz(const std::array<int, 3>& shape, const CutRoom& room) {
+  std::array<int, 3> xyz{1, 1, 1};
+  for (std::size_t k = 0; k < 3; ++k) xyz[static_cast<std::size_t>(room.axes[k])] = shape[k];
+  return xyz;
+}
+
+std::string describe(const CutShape& shape, const CutRoom& room) {
+  if (shape.form == CutForm::Strips) return "strips";
+  const auto xyz = along_xyz(shape.ranks, room);
+  return room.dimension == 3 ? fmt::format("{} x {} x {}", xyz[0], xyz[1], xyz[2])
+                             : fmt::format("{} x {}", xyz[0], xyz[1]);
+}
+
+CutWish parse_cuts(const std::string& text) {
+  CutWish wish;
+  if (text == "auto") return wish;
+  wish.kind = text == "strips" ? CutWish::Kind::Strips : CutWish::Kind::Bricks;
+  if (text == "strips") return wish;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (std::size_t k = 0; k < 3 && at != end; ++k) {
+    const auto [next, error] = std::from_chars(at, end, wish.bricks[k]);
+    if (error != std::errc() || wish.bricks[k] < 1) break;
+    at = next;
+    if (at != end && (*at == ',' || *at == 'x')) ++at;
+  }
+  if (at == end && text.find_first_of(",x") != std::string::npos && text.back() >= '0' &&
+      text.back() <= '9')
+    return wish;
+  throw InputError("cuts '" + text + "' are neither auto, strips nor numbers",
+                   "give the bricks along x, y and z, as in --cuts 2,2,1");
+}
+
+template CutRoom room_of(const Grid<2>&, std::int64_t);
+template CutRoom room_of(const Grid<3>&, std::int64_t);
+
+}  // namespace barchan

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include <barchan/core/model/model.hpp>
+#include <barchan/core/search/grid.hpp>
+#include <barchan/tasks/lane_map.hpp>
+
+namespace barchan {
+
+/// Cells that a strip is wide at least, so that a particle is in one band; a brick needs one.
+inline constexpr int kMinSlabs = 2;
+
+/// The grid that is cut, as its cuts see it.
+struct CutRoom {
+  std::array<int, 3> cells{1, 1, 1};  ///< along the grid's axes
+  std::array<int, 3> axes{0, 1, 2};   ///< which of x, y, z these are
+  std::array<bool, 3> is_periodic{};
+  int dimension = 3;
+  std::int64_t num_particles = 0;
+
+  [[nodiscard]] int most_strips() const;
+  [[nodiscard]] double num_cells() const;
+};
+template <int Dim>
+[[nodiscard]] CutRoom room_of(const Grid<Dim>& grid, std::int64_t num_particles);
+
+/// What cutting asks for.
+struct CutRequest {
+  CutWish wish;
+  int ranks = 1, threads = 1;  ///< threads of a rank: as many lanes, where they fit
+  bool needs_strips = false;   ///< the exchange `return`
+  SourcePlace place;           ///< of the domain, in the deck
+};
+
+/// How ranks and their lanes are cut: as asked for, or in the way with the smallest predicted step;
+/// bricks only where they are clearly better than strips. Pure.
+/// Errors: InputError, with what would fit.
+[[nodiscard]] CutShape choose_cuts(const CutRequest& request, const CutRoom& room);
+
+/// A step of the largest lane, in steps of a particle. @pre it fits
+[[nodiscard]] double predicted_step(const CutShape& shape, const CutRoom& room);
+
+/// Cells that a lane is wide at least.
+[[nodiscard]] inline int min_cells(CutForm form) {
+  return form == CutForm::Strips ? kMinSlabs : 1;
+}
+
+/// "strips", "4 x 1 x 2"; along x, y and z.
+[[nodiscard]] std::string describe(const CutShape& shape, const CutRoom& room);
+/// Of ranks, along x, y and z. @param shape  along the grid's axes
+[[nodiscard]] std::array<int, 3> along_xyz(const std::array<int, 3>& shape, const CutRoom& room);
+
+/// "auto", "strips" or numbers such as "2,2,1". Errors: InputError.
+[[nodiscard]] CutWish parse_cuts(const std::string& text);
+
+}  // namespace barchan
