@@ -104,9 +104,12 @@ TEST_P(SteadyStep, AllocatesNothing) {
 
       EXPECT_GT(found.steps, 50);
       EXPECT_EQ(found.by_new, 0) << GetParam() << ", " << threads << " threads, " << s.name;
-      // Open MPI allocates for every MPI_Rget, and now and then where its lists of requests grow.
+      // Open MPI allocates for every MPI_Rget, now and then where its lists of requests grow, and
+      // for a post that comes while this rank may not yet start towards that one: a window serves
+      // the links of one number, so a rank in the middle starts on one towards both sides.
       if (GetParam() != "get") {
-        EXPECT_LT(found.by_malloc, 10) << GetParam() << ", " << threads << " threads, " << s.name;
+        EXPECT_LT(found.by_malloc, GetParam() == "pscw" ? 3 * found.steps : 10)
+            << GetParam() << ", " << threads << " threads, " << s.name;
       }
     }
   }
