@@ -21,7 +21,7 @@ constexpr double kHandOver = 10.0;  ///< to a lane of the same rank
 /// Strips hide a halo behind the other cut's work, and have fewer messages.
 constexpr double kClearlyBetter = 0.9;
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr double kDoesNotFit = std::numeric_limits<double>::infinity();
 
 using Shape = std::array<int, 3>;
 
@@ -49,7 +49,7 @@ bool fits(const CutShape& shape, const CutRoom& room) {
 
 struct Choice {
   CutShape shape;
-  double step = kNever;
+  double step = kDoesNotFit;
 
   void take(const CutShape& other, const CutRoom& room) {
     if (!fits(other, room)) return;
@@ -70,7 +70,7 @@ Choice best_strips(const CutRequest& request, const CutRoom& room) {
 
 Choice best_bricks(const CutRequest& request, const CutRoom& room, std::span<const Shape> ranks) {
   Choice best;
-  for (int threads = request.threads; threads >= 1 && best.step == kNever; --threads) {
+  for (int threads = request.threads; threads >= 1 && best.step == kDoesNotFit; --threads) {
     for (const Shape& of_ranks : ranks) {
       for (const Shape& lanes : products(threads, room.dimension))
         best.take({CutForm::Bricks, of_ranks, lanes}, room);
@@ -95,7 +95,7 @@ Shape in_grid_order(const Shape& xyz, const CutRoom& room) {
 std::string remedy(const CutRequest& request, const CutRoom& room) {
   const Choice bricks =
       best_bricks({{}, request.ranks, 1, false, {}}, room, products(request.ranks, room.dimension));
-  if (bricks.step < kNever && !request.needs_strips)
+  if (bricks.step < kDoesNotFit && !request.needs_strips)
     return fmt::format("for {} ranks cuts = {} would fit, or \"auto\"", request.ranks,
                        in_words(along_xyz(bricks.shape.ranks, room), room.dimension));
   const int most = room.most_strips();
@@ -131,7 +131,8 @@ CutShape as_asked(const CutRequest& request, const CutRoom& room) {
   // Along the strip axis alone they are strips, where these fit.
   if (ranks[1] == 1 && ranks[2] == 1) {
     const Choice strips = best_strips(request, room);
-    if (strips.step < kNever && strips.shape.num_lanes() == request.threads) return strips.shape;
+    if (strips.step < kDoesNotFit && strips.shape.num_lanes() == request.threads)
+      return strips.shape;
   }
   if (request.needs_strips)
     refuse(request, room,
@@ -189,7 +190,7 @@ CutShape choose_cuts(const CutRequest& request, const CutRoom& room) {
   if (request.wish.kind == CutWish::Kind::Bricks) return as_asked(request, room);
   const Choice strips = best_strips(request, room);
   if (request.wish.kind == CutWish::Kind::Strips || request.needs_strips) {
-    if (strips.step < kNever) return strips.shape;
+    if (strips.step < kDoesNotFit) return strips.shape;
     const int most = room.most_strips();
     refuse(request, room,
            fmt::format("{} ranks as strips of {} cells, of which {} fit{} into {} cells along {}",
@@ -197,7 +198,7 @@ CutShape choose_cuts(const CutRequest& request, const CutRoom& room) {
                        "xyz"[room.axes[0]]));
   }
   const Choice bricks = best_bricks(request, room, products(request.ranks, room.dimension));
-  if (strips.step == kNever && bricks.step == kNever)
+  if (strips.step == kDoesNotFit && bricks.step == kDoesNotFit)
     refuse(request, room,
            fmt::format("{} ranks for a domain of {} x {} x {} cells", request.ranks,
                        along_xyz(room.cells, room)[0], along_xyz(room.cells, room)[1],

@@ -38,6 +38,7 @@ void StripRebuild<Dim>::seed(const ParticleSet& set) {
   for (const CellAt<Dim>& cell : cells) counts.add<Dim>(cell);
   cuts_ = equal_cuts(counts, strip_.map().shape());
   std::vector<Placement<Dim>> places;
+  places.reserve(static_cast<std::size_t>(strip_.num_lanes()));
   for (int l = 0; l < strip_.num_lanes(); ++l) places.push_back(placement_of(l));
   seed_lanes<Dim>(strip_, set, cells, places);
   begin_lists();

@@ -100,6 +100,15 @@ std::optional<double> RunSummary::grain_of_smallest_weight() const {
   return force_grain * measures.max_inverse_mass / gravity;
 }
 
+namespace {
+
+Machine this_machine() {
+  return {host_name(), processor_name(), static_cast<int>(std::thread::hardware_concurrency()), 1,
+          mpi_library_version()};
+}
+
+}  // namespace
+
 RunSummary summarize(Simulation& simulation, const std::string& deck,
                      const std::optional<StepLimit>& limit, bool interrupted) {
   const Model& model = simulation.model();
@@ -120,9 +129,7 @@ RunSummary summarize(Simulation& simulation, const std::string& deck,
       options.search.value_or(model.search.kind) == ContactSearchKind::AllPairs;
   summary.contact_search = is_all_pairs ? "all-pairs" : "cells";
   summary.vector = simulation.vector_width();
-  summary.machine = {host_name(), processor_name(),
-                     static_cast<int>(std::thread::hardware_concurrency()), 1,
-                     mpi_library_version()};
+  summary.machine = this_machine();
   summary.particles = simulation.num_particles();
   summary.steps = simulation.step();
   summary.loop_steps = simulation.timings().steps;

@@ -69,7 +69,7 @@ def check_trace_and_graph():
     expect(all(sent[name] <= ts for name, ts in noticed.items()), "messages noticed before they were sent")
     with open("step.dot", encoding="utf-8") as file:
         dot = file.read()
-    expect(dot.count("{") == dot.count("}") and "r0_right0 -> r1_arrived_left" in dot, "step.dot")
+    expect(dot.count("{") == dot.count("}") and "r0_right0 -> r1_arrived0" in dot, "step.dot")
 
 
 def check_replay():
