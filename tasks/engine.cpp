@@ -58,6 +58,10 @@ Simulation::EngineOf<Dim>::EngineOf(const Model& model, const OpenCheckpoint& ch
   begin_loop();
   step_ = s.step;
   stages_.restore(s);
+  if (s.last_dt > 0.0) {
+    since_ = s.since;
+    parts_.world.last_dt = s.last_dt;
+  }
   schedule_.restore(step_, lists_.top_speed(), s.look,
                     communicator_.is_root() ? population_.size : 0);
 }
@@ -113,10 +117,12 @@ std::int64_t Simulation::EngineOf<Dim>::go_on(std::int64_t most) {
   prepare_step();
   StepFrame frame;
   frame.step = step_;
-  frame.kick = step_ == 0 ? 0.5 * parts_.world.dt : parts_.world.dt;
+  frame.last_dt = step_ == 0 ? 0.0 : parts_.world.last_dt;
+  frame.kick = 0.5 * frame.last_dt + 0.5 * parts_.world.dt;
   for (int c = 0; c < 3; ++c) frame.gravity[c] = model_.gravity[c];
   frame.local_damping = stages_.spec().local_damping;
   const int steps = steps_in_a_go(most);
+  plates_.set_steps(parts_.world.last_dt, parts_.world.dt);
   const bool drives_plates = plates_.are_driven(walls());
   if (drives_plates) {
     // Contacts with plates are few, so one thread does all lanes.
@@ -137,6 +143,7 @@ std::int64_t Simulation::EngineOf<Dim>::go_on(std::int64_t most) {
   }
   plates_.move(parts_.world.walls);
   step_ += steps;
+  parts_.world.last_dt = parts_.world.dt;
   is_in_step_ = false;
   return steps;
 }
@@ -229,6 +236,7 @@ void Simulation::EngineOf<Dim>::begin_check() {
 template <int Dim>
 int Simulation::EngineOf<Dim>::steps_in_a_go(std::int64_t most) {
   if (parts_.strip.exchange() != nullptr || parts_.strip.num_lanes() == 1 || step_ == 0) return 1;
+  if (parts_.world.last_dt != parts_.world.dt) return 1;  // the kick of the first one alone differs
   if (!stages_.is_last() || !plates_.stand_still(walls())) return 1;
   const auto steps_until = [&](std::int64_t end) {
     std::int64_t steps = 1;
@@ -287,6 +295,10 @@ CheckpointState Simulation::EngineOf<Dim>::state() {
   s.num_particles = population_.size;
   s.left = population_.left;
   s.look = schedule_.pending_look(step_);
+  if (since_.step > 0) {
+    s.since = since_;
+    s.last_dt = parts_.world.last_dt;
+  }
   stages_.save(s);
   save_parts(parts_, s);
   return s;
@@ -298,7 +310,7 @@ void Simulation::EngineOf<Dim>::save_checkpoint() {
   parts_.strip.complete_halo();  // whether pairs across cuts touch
   CheckpointCopy& copy = keeper_->begin();
   copy.step = step_;
-  copy.time = static_cast<double>(step_) * model_.time.step;
+  copy.time = time();
   copy_lanes(parts_, graph_, lists_.wall_outrun(), copy);
   copy.state.clear();
   if (communicator_.is_root()) copy.state = encode(state());

@@ -4,6 +4,8 @@
 #include <memory>
 #include <string>
 
+#include <barchan/core/brick/link_force.hpp>
+#include <barchan/core/checkpoint/state.hpp>
 #include <barchan/tasks/checkpoint_keeper.hpp>
 #include <barchan/tasks/checkpoint_load.hpp>
 #include <barchan/tasks/growth_watch.hpp>
@@ -57,10 +59,19 @@ class Simulation::Engine {
   virtual void add(const ParticleSet& newcomers) = 0;
   virtual void remove(std::span<const std::int64_t> ids) = 0;
   virtual void set_gravity(const Vec3& gravity) = 0;
+  virtual void set_time_step(double dt) = 0;
+  virtual void set_contacts(const ContactTable& contacts) = 0;
+  /// One step, shorter than others, that ends then. @return 1, or 0 as run()
+  virtual std::int64_t run_short(double time) = 0;
   virtual void set_wall_velocity(std::size_t wall, const Vec3& velocity) = 0;
   virtual void set_wall_load(std::size_t wall, double load) = 0;
+  /// @param normal  of length 1
+  virtual void set_wall_pose(std::size_t wall, const Vec3& point, const Vec3& normal) = 0;
+  virtual std::vector<LinkForce> links(LinkKind kind) = 0;
   virtual void save(std::unique_ptr<State::Data>& state) = 0;
   virtual void load(const State::Data& state) = 0;
+
+  [[nodiscard]] double time() const { return since_.at(step_, model_.time.step); }  ///< [s]
 
   /// Fills in how many threads there are. Collective.
   Engine(const Model& model, Communicator communicator, RunOptions options)
@@ -77,14 +88,16 @@ class Simulation::Engine {
   RunOptions options_;
   Communicator communicator_;
   std::int64_t step_ = 0;
+  TimePoint since_;  ///< of time()
   Stages stages_{model_};
   Population population_;
   bool stopped_ = false;
-  bool has_account_ = false;    ///< of energy, where one is kept
-  bool is_over_ = false;        ///< the last stage is
-  bool is_in_step_ = false;     ///< or one was not ended
-  std::exception_ptr failure_;  ///< what run() threw
-  std::string restored_from_;   ///< checkpoint; empty: a new run
+  bool has_new_contacts_ = false;  ///< somebody has called set_contact
+  bool has_account_ = false;       ///< of energy, where one is kept
+  bool is_over_ = false;           ///< the last stage is
+  bool is_in_step_ = false;        ///< or one was not ended
+  std::exception_ptr failure_;     ///< what run() threw
+  std::string restored_from_;      ///< checkpoint; empty: a new run
   ExchangeChoice choice_;
   std::unique_ptr<Trace> trace_;  ///< null: no trace
   std::unique_ptr<CheckpointKeeper> keeper_;
@@ -147,8 +160,13 @@ class Simulation::EngineOf final : public Simulation::Engine {
   void add(const ParticleSet& newcomers) override;
   void remove(std::span<const std::int64_t> ids) override;
   void set_gravity(const Vec3& gravity) override;
+  void set_time_step(double dt) override;
+  void set_contacts(const ContactTable& contacts) override;
+  std::int64_t run_short(double time) override;
   void set_wall_velocity(std::size_t wall, const Vec3& velocity) override;
   void set_wall_load(std::size_t wall, double load) override;
+  void set_wall_pose(std::size_t wall, const Vec3& point, const Vec3& normal) override;
+  std::vector<LinkForce> links(LinkKind kind) override;
   void save(std::unique_ptr<State::Data>& state) override;
   void load(const State::Data& state) override;
 
@@ -165,6 +183,11 @@ class Simulation::EngineOf final : public Simulation::Engine {
   [[nodiscard]] int steps_in_a_go(std::int64_t most);
   [[nodiscard]] CheckpointState state();
   void renew_lists();
+  void check_step(const Model& wanted);
+  void take_contacts(const ContactTable& contacts);
+  /// Books what springs hold more after change() as given by the caller. Collective.
+  void book_elastic(const std::function<void()>& change);
+  void turn_wall(std::size_t wall, const Vec3& normal);
   [[nodiscard]] ParticleView view_of(Lane<Dim>& lane);
   [[nodiscard]] const ParticleIndex& index();
   /// Of this rank, others have lane < 0. Collective. Errors: InputError for an id that there is not

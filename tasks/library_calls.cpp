@@ -1,4 +1,4 @@
-// What other solvers call between steps: arrays, loads, gravity, walls.
+// What other solvers call between steps: arrays, loads, gravity.
 #include <algorithm>
 #include <cmath>
 #include <exception>
@@ -167,21 +167,6 @@ CutsInUse Simulation::EngineOf<Dim>::cuts() const {
           along_xyz(shape.lanes, room)};
 }
 
-template <int Dim>
-void Simulation::EngineOf<Dim>::set_wall_velocity(std::size_t wall, const Vec3& velocity) {
-  parts_.world.walls[wall].velocity = velocity;
-  if (velocity.norm() <= schedule_.speed()) return;
-  schedule_.amend(step_, 0, velocity.norm());
-  renew_lists();
-}
-
-template <int Dim>
-void Simulation::EngineOf<Dim>::set_wall_load(std::size_t wall, double load) {
-  model_.walls[wall].load = load;
-  parts_.world.wall_specs[wall].load = load;
-  plates_.set_load(wall, load);
-}
-
 template ParticleView Simulation::EngineOf<2>::view_of(Lane<2>&);
 template std::vector<ParticleView> Simulation::EngineOf<2>::owned();
 template std::vector<LoadView> Simulation::EngineOf<2>::loads();
@@ -193,8 +178,6 @@ template const ParticleIndex& Simulation::EngineOf<2>::index();
 template void Simulation::EngineOf<2>::set_loads(const Loads&);
 template CutsInUse Simulation::EngineOf<2>::cuts() const;
 template void Simulation::EngineOf<2>::set_gravity(const Vec3&);
-template void Simulation::EngineOf<2>::set_wall_velocity(std::size_t, const Vec3&);
-template void Simulation::EngineOf<2>::set_wall_load(std::size_t, double);
 template ParticleView Simulation::EngineOf<3>::view_of(Lane<3>&);
 template std::vector<ParticleView> Simulation::EngineOf<3>::owned();
 template std::vector<LoadView> Simulation::EngineOf<3>::loads();
@@ -206,7 +189,5 @@ template const ParticleIndex& Simulation::EngineOf<3>::index();
 template void Simulation::EngineOf<3>::set_loads(const Loads&);
 template CutsInUse Simulation::EngineOf<3>::cuts() const;
 template void Simulation::EngineOf<3>::set_gravity(const Vec3&);
-template void Simulation::EngineOf<3>::set_wall_velocity(std::size_t, const Vec3&);
-template void Simulation::EngineOf<3>::set_wall_load(std::size_t, double);
 
 }  // namespace barchan

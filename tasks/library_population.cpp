@@ -61,7 +61,7 @@ void check_size(const RunParts<Dim>& run, const ParticleSet& newcomers) {
 
 /// Together with those that are there, at rest.
 template <int Dim>
-void check_step(const RunParts<Dim>& run, const ParticleSet& newcomers) {
+void check_step_with(const RunParts<Dim>& run, const ParticleSet& newcomers) {
   ParticleSet all = newcomers;
   for_each_owned(run.strip, [&](const OwnedParticle& p) {
     all.particles.push_back(p);
@@ -113,7 +113,7 @@ void Simulation::EngineOf<Dim>::add(const ParticleSet& newcomers) {
                          "give ids that are free");
       check_room(parts_, p);
     }
-    check_step(parts_, newcomers);
+    check_step_with(parts_, newcomers);
   });
   begin_account();
   double speed = 0.0;

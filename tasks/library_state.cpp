@@ -48,10 +48,18 @@ void Simulation::EngineOf<Dim>::save(std::unique_ptr<State::Data>& state) {
   s.walls = parts_.world.walls;
   s.walls_at_renewal = lists_.walls_at_renewal();
   s.loads.clear();
-  for (std::size_t w = 0; w < s.walls.size(); ++w) s.loads.push_back(plates_.load(w));
+  s.normals.clear();
+  for (std::size_t w = 0; w < s.walls.size(); ++w) {
+    s.loads.push_back(plates_.load(w));
+    s.normals.push_back(model_.walls[w].normal);
+  }
   s.gravity = model_.gravity;
+  s.contacts = model_.contacts;
   s.schedule = schedule_.memory(step_);
   stages_.save(s.stages);
+  s.since = since_;
+  s.dt = s.stages.last_dt = parts_.world.dt;
+  s.last_dt = parts_.world.last_dt;
   s.num_particles = population_.size;
   s.left = population_.left;
   s.watch = watch_.memory();
@@ -73,9 +81,16 @@ void Simulation::EngineOf<Dim>::load(const State::Data& state) {
   parts_.rebuild.set_cuts(s.cuts);
   parts_.world.walls = s.walls;
   lists_.recall(s.walls_at_renewal);
-  for (std::size_t w = 0; w < s.walls.size(); ++w) set_wall_load(w, s.loads[w]);
+  for (std::size_t w = 0; w < s.walls.size(); ++w) {
+    set_wall_load(w, s.loads[w]);
+    if (s.normals[w] != model_.walls[w].normal) turn_wall(w, s.normals[w]);
+  }
   model_.gravity = s.gravity;
+  if (has_new_contacts_) take_contacts(s.contacts);
   stages_.restore(s.stages);
+  since_ = s.since;
+  model_.time.step = parts_.world.dt = s.dt;
+  parts_.world.last_dt = s.last_dt;
   population_.size = s.num_particles;
   population_.left = s.left;
   watch_.recall(s.watch);

@@ -71,7 +71,7 @@ double ListsKeeper<Dim>::wall_outrun() const {
     const WallState& wall = run_.world.walls[w];
     if (!wall.is_active) continue;
     // As the last step found it, before it moved on.
-    const Vec3 at = wall.point - run_.world.dt * wall.velocity;
+    const Vec3 at = wall.point - run_.world.last_dt * wall.velocity;
     most = std::max(most, (at - walls_at_renewal_[w]).squaredNorm());
   }
   return outrun_share(most, run_.world.skin);

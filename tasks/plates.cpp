@@ -30,7 +30,7 @@ double kick_plate(WallState& state, const WallSpec& spec, const Vec3& force, dou
 }  // namespace
 
 Plates::Plates(const Communicator& communicator, std::span<const WallSpec> specs, double dt)
-    : specs_(specs.begin(), specs.end()), dt_(dt) {
+    : specs_(specs.begin(), specs.end()), last_dt_(dt), dt_(dt) {
   for (std::size_t w = 0; w < specs.size(); ++w) {
     if (specs[w].is_loaded) loaded_.push_back(w);
   }
@@ -83,8 +83,8 @@ void Plates::kick(std::span<WallState> states, int appears_in, std::span<WallSum
   for (std::size_t p = 0; p < loaded_.size(); ++p) {
     const std::size_t w = loaded_[p];
     if (!states[w].is_active) continue;
-    const double h = specs_[w].from_stage == appears_in ? 0.5 * dt_ : dt_;
-    const double work = kick_plate(states[w], specs_[w], force_on(p), h);
+    const double last = specs_[w].from_stage == appears_in ? 0.0 : last_dt_;
+    const double work = kick_plate(states[w], specs_[w], force_on(p), 0.5 * last + 0.5 * dt_);
     if (!works.empty()) works[w].work.add(work);
   }
 }

@@ -42,9 +42,15 @@ class Plates {
   /// @param works  of each wall on the particles in this step; those of loaded plates are added
   /// [J]; empty: another rank counts them
   void kick(std::span<WallState> states, int appears_in, std::span<WallSums> works);
+  /// The step before, and the one under way, which begin() to move() are of [s].
+  void set_steps(double last_dt, double dt) {
+    last_dt_ = last_dt;
+    dt_ = dt;
+  }
   /// After that all walls move.
   void move(std::span<WallState> states) const;
   void set_load(std::size_t wall, double load) { specs_[wall].load = load; }
+  void set_normal(std::size_t wall, const Vec3& normal) { specs_[wall].normal = normal; }
   [[nodiscard]] double load(std::size_t wall) const { return specs_[wall].load; }
   [[nodiscard]] double wait_seconds() const { return wait_seconds_; }  ///< for sums of forces
 
@@ -54,7 +60,7 @@ class Plates {
   std::vector<WallSpec> specs_;
   std::vector<WallSums> sums_;
   std::vector<std::size_t> loaded_;
-  double dt_;
+  double last_dt_, dt_;
   double wait_seconds_ = 0.0;
   std::vector<std::int64_t> digits_;
   std::unique_ptr<Reduction> reduction_;  ///< null: no plate is loaded

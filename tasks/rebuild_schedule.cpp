@@ -143,7 +143,7 @@ void RebuildSchedule::restore(std::int64_t step, double speed, const PendingLook
 }
 
 RebuildSchedule::Memory RebuildSchedule::memory(std::int64_t step) {
-  Memory m{skin_,      gravity_,    speed_,    speed_step_,    lists_step_,
+  Memory m{skin_,      dt_,         gravity_,  speed_,         speed_step_, lists_step_,
            lists_end_, check_step_, interval_, is_check_over_, std::nullopt};
   if (check_step_ >= step) return m;
   wait();
@@ -154,6 +154,7 @@ RebuildSchedule::Memory RebuildSchedule::memory(std::int64_t step) {
 void RebuildSchedule::recall(std::int64_t step, const Memory& m) {
   if (check_step_ < step) wait();
   skin_ = m.skin;
+  dt_ = m.dt;
   gravity_ = m.gravity;
   speed_ = m.speed;
   speed_step_ = m.speed_step;

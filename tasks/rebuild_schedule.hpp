@@ -100,7 +100,7 @@ class RebuildSchedule {
 
   /// All that it knows between two steps; `check` where a check is on its way.
   struct Memory {
-    double skin = 0.0, gravity = 0.0, speed = 0.0;
+    double skin = 0.0, dt = 0.0, gravity = 0.0, speed = 0.0;
     std::int64_t speed_step = 0, lists_step = 0, lists_end = 0, check_step = 0;
     int interval = 0;
     bool is_check_over = false;
@@ -114,6 +114,9 @@ class RebuildSchedule {
   /// @param newcomers  of all ranks; below 0: particles that went
   /// @param speed      that something may have now [m/s]
   void amend(std::int64_t step, std::int64_t newcomers, double speed);
+  /// Before a step from which on they have this length; lists must be made anew. Shorter ones
+  /// between these need no call [s].
+  void set_step_length(double dt) { dt_ = dt; }
   /// @return whether it is more than lists allow for, so that new ones must be made
   bool raise_gravity(double gravity) {
     const bool is_more = gravity > gravity_;

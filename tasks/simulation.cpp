@@ -114,7 +114,7 @@ std::int64_t Simulation::step() const {
   return engine().step_;
 }
 double Simulation::time() const {
-  return static_cast<double>(engine().step_) * engine().model_.time.step;
+  return engine().time();
 }
 int Simulation::stage() const {
   return engine().stages_.current();

@@ -13,6 +13,7 @@
 #include <barchan/comm/probe/auto_exchange.hpp>
 #include <barchan/comm/slots/exchange.hpp>
 #include <barchan/core/brick/departure.hpp>
+#include <barchan/core/brick/link_force.hpp>
 #include <barchan/core/brick/measures.hpp>
 #include <barchan/core/links/walls.hpp>
 #include <barchan/core/model/model.hpp>
@@ -20,6 +21,7 @@
 #include <barchan/tasks/particle_view.hpp>
 #include <barchan/tasks/run_options.hpp>
 #include <barchan/tasks/state.hpp>
+#include <barchan/tasks/wall_control.hpp>
 
 namespace barchan {
 
@@ -30,8 +32,6 @@ struct OwnedParticle : ParticleData {
 };
 
 using BondVisitor = std::function<void(const BondData&, const Vec3& a, const Vec3& b)>;
-
-class Simulation;
 
 /// Times of one kind of communication on this rank [s].
 struct CommunicationTime {
@@ -57,24 +57,6 @@ struct Timings {
 struct CutsInUse {
   bool are_strips = true;
   std::array<int, 3> ranks{1, 1, 1}, lanes{1, 1, 1};
-};
-
-/// A wall of a simulation, which lives longer and is not moved.
-class WallControl {
- public:
-  [[nodiscard]] const WallState& state() const;  ///< force, torque and work of the last measure()
-  /// From the next step on [m/s]. Collective; the same on every rank.
-  /// Errors: InputError: the wall is moved by its load
-  void set_velocity(const Vec3& velocity);
-  /// Of a loaded plate, along its normal [N/m²]. Collective; the same on every rank.
-  /// Errors: InputError: the wall is not loaded
-  void set_load(double load);
-
- private:
-  friend class Simulation;
-  WallControl(Simulation& simulation, std::size_t wall) : simulation_(&simulation), wall_(wall) {}
-  Simulation* simulation_;
-  std::size_t wall_;
 };
 
 /// A DEM simulation on all ranks of a communicator.
@@ -123,8 +105,16 @@ class Simulation {
   /// than 0 steps, from within run(), after the simulation was moved from. RunError once MPI has
   /// ended.
   std::int64_t run(std::int64_t num_steps);
-  /// Runs to the step nearest to `time` [s]; as run(). @return steps done
+  /// Runs until it is `time` [s]: whole steps, and then a shorter one where one is needed. A time
+  /// that is within a millionth of a step counts as that step. As run(), and the same on every
+  /// rank. @return steps done
+  /// The state is the same to the bit for the same times on any ranks; a shorter step is a step
+  /// like others, so it is another state than without (docs/library.md).
+  /// Errors: std::invalid_argument: `time` has passed, or is none
   std::int64_t advance_to(double time);
+  /// The length of steps from now on [s]. Collective; the same on every rank.
+  /// Errors: InputError, and nothing is changed: not above 0, or unstable
+  void set_time_step(double dt);
   /// Ends the run() of this process that is under way, or else its next one, on all ranks and
   /// within a few steps; then the request is forgotten. Callable from a signal handler.
   static void request_stop() noexcept;
@@ -197,6 +187,14 @@ class Simulation {
   void remove(std::span<const std::int64_t> ids);
   /// From the next step on [m/s²]. Collective; the same on every rank.
   void set_gravity(const Vec3& gravity);
+  /// What two materials have together from the next step on; both orders of names are the same.
+  /// Springs of contacts stay. Collective; the same on every rank.
+  /// @param constants  such as a changed copy of model().contacts.at(a, b)
+  /// Errors: std::invalid_argument: no material has the name. InputError, and nothing is changed:
+  /// the step would be too long, or contacts would hold farther beyond touch than at the start
+  void set_contact(const std::string& a, const std::string& b, const ContactConstants& constants);
+  /// What they have now. Errors: std::invalid_argument: no material has the name
+  [[nodiscard]] const ContactConstants& contact(const std::string& a, const std::string& b) const;
   /// The wall of this name: wall("lid").set_velocity(v). Errors: std::invalid_argument: none has it
   [[nodiscard]] WallControl wall(const std::string& name);
 
@@ -208,6 +206,9 @@ class Simulation {
   /// another simulation
   void load(const State& state);
 
+  /// Contacts or bonds that count on this rank, in any order, and the forces that the next step
+  /// will find in them; over all ranks each is listed once. A copy. Collective.
+  [[nodiscard]] std::vector<LinkForce> links(LinkKind kind);
   /// Energies, contacts, largest overlap, momentum; over all ranks. Collective.
   [[nodiscard]] Measures measure();
   /// Where energy has come from and gone to, of what measure() gave at this step. Local.

@@ -1,4 +1,4 @@
-// What Simulation and WallControl ask of callers before the engine does what they want.
+// What Simulation asks of callers before the engine does what they want.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -13,70 +13,34 @@
 
 #include <barchan/core/base/error.hpp>
 #include <barchan/core/model/digest.hpp>
+#include <barchan/tasks/caller_checks.hpp>
 #include <barchan/tasks/engine.hpp>
 
 namespace barchan {
-namespace {
-
-bool are_finite(std::span<const double> values) {
-  constexpr std::size_t kWidth = 8;  // chains of additions that do not wait for each other
-  double sums[kWidth] = {};          // of zeros, or not a number
-  std::size_t k = 0;
-  for (; k + kWidth <= values.size(); k += kWidth)
-    for (std::size_t c = 0; c < kWidth; ++c) sums[c] += 0.0 * values[k + c];
-  for (; k < values.size(); ++k) sums[0] += 0.0 * values[k];
-  return std::all_of(std::begin(sums), std::end(sums), [](double sum) { return sum == 0.0; });
-}
-
-/// Errors: InputError on every rank: ranks give different numbers, or some that are not finite.
-void require_same(const Communicator& communicator, const char* call, const Vec3& values) {
-  double both[6];
-  for (int c = 0; c < 3; ++c) {
-    both[c] = values[c];
-    both[3 + c] = -values[c];
-  }
-  if (communicator.any_of(!are_finite(both)))
-    throw InputError(fmt::format("Simulation::{}: a number is not finite", call), "");
-  communicator.allreduce_max(std::span<double>(both));
-  for (int c = 0; c < 3; ++c) {
-    if (both[c] != -both[3 + c])
-      throw InputError(fmt::format("Simulation::{}: ranks give different values", call),
-                       "give the same on every rank");
-  }
-}
-
-void require_plane(const Model& model, const char* call, const Vec3& v) {
-  if (model.dimension == 2 && v[2] != 0.0)
-    throw InputError(fmt::format("Simulation::{}: {} along z leaves the plane", call, v[2]),
-                     "give 0 in 2D");
-}
-
-/// @return what is wrong, on every rank; empty: nothing
-std::string differing_lists(const Communicator& communicator,
-                            std::initializer_list<std::uint64_t> hashes) {
-  bool differs = false;
-  for (const std::uint64_t mine : hashes) {
-    std::uint64_t first = mine;
-    communicator.bcast(std::as_writable_bytes(std::span(&first, 1)));
-    differs = differs || first != mine;
-  }
-  return communicator.any_of(differs) ? "ranks give different lists" : "";
-}
-
-template <class T>
-std::uint64_t hash_of(std::span<const T> values) {
-  return hash_of_bytes(std::as_bytes(values));
-}
-
-}  // namespace
 
 std::int64_t Simulation::advance_to(double time) {
+  constexpr double kSame = 1e-6;  // share of a step
   const double dt = engine().model_.time.step;
-  const double steps = std::round(time / dt) - static_cast<double>(engine().step_);
-  if (!(steps >= 0.0 && steps < 9e15))
+  const double steps = (time - this->time()) / dt, whole = std::floor(steps + kSame);
+  if (!(whole >= 0.0 && whole < 9e15))
     throw std::invalid_argument(
         fmt::format("Simulation::advance_to: {} s, where the run is at {} s", time, this->time()));
-  return run(static_cast<std::int64_t>(steps));
+  require_same(between_steps("advance_to").communicator_, "advance_to", Vec3(time, 0.0, 0.0));
+  const std::int64_t done = run(static_cast<std::int64_t>(whole));
+  if (done < static_cast<std::int64_t>(whole) || steps - whole <= kSame) return done;
+  return done + between_steps("advance_to").run_short(time);
+}
+
+void Simulation::set_time_step(double dt) {
+  Engine& engine = between_steps("set_time_step");
+  require_same(engine.communicator_, "set_time_step", Vec3(dt, 0.0, 0.0));
+  if (!(dt > 0.0))
+    throw InputError(fmt::format("Simulation::set_time_step: {} s", dt), "give a time above zero");
+  if (dt != engine.model_.time.step) engine.set_time_step(dt);
+}
+
+std::vector<LinkForce> Simulation::links(LinkKind kind) {
+  return between_steps("links").links(kind);
 }
 
 std::vector<ParticleView> Simulation::owned() {
@@ -163,6 +127,47 @@ void Simulation::set_gravity(const Vec3& gravity) {
   engine.set_gravity(gravity);
 }
 
+namespace {
+
+int material_of(const Model& model, const std::string& name) {
+  std::vector<std::string> names;
+  for (std::size_t m = 0; m < model.materials.size(); ++m) {
+    if (model.materials[m].name == name) return static_cast<int>(m);
+    names.push_back("'" + model.materials[m].name + "'");
+  }
+  throw std::invalid_argument(
+      fmt::format("Simulation::set_contact: no material is called '{}': there are {}", name,
+                  fmt::join(names, ", ")));
+}
+
+}  // namespace
+
+const ContactConstants& Simulation::contact(const std::string& a, const std::string& b) const {
+  const Model& m = model();
+  return m.contacts.at(material_of(m, a), material_of(m, b));
+}
+
+void Simulation::set_contact(const std::string& a, const std::string& b,
+                             const ContactConstants& constants) {
+  Engine& engine = between_steps("set_contact");
+  const Model& model = engine.model_;
+  const auto first = static_cast<std::size_t>(material_of(model, a)),
+             second = static_cast<std::size_t>(material_of(model, b));
+  ContactTable table = model.contacts;
+  const auto n = static_cast<std::size_t>(table.num_materials);
+  table.constants[first * n + second] = table.constants[second * n + first] = constants;
+  std::vector<double> numbers{static_cast<double>(std::min(first, second)),
+                              static_cast<double>(std::max(first, second))};
+  with_law(table.law, [&]<class Law>(Law /*law*/) {
+    Law::for_each_number(constants, [&](const char*, double value) { numbers.push_back(value); });
+  });
+  const auto hash = hash_of(std::span<const double>(numbers));
+  if (!differing_lists(engine.communicator_, {hash}).empty())
+    throw InputError("Simulation::set_contact: ranks give different values",
+                     "give the same on every rank");
+  engine.set_contacts(table);
+}
+
 WallControl Simulation::wall(const std::string& name) {
   const std::vector<WallSpec>& walls = engine().model_.walls;
   std::vector<std::string> names;
@@ -173,34 +178,6 @@ WallControl Simulation::wall(const std::string& name) {
   throw std::invalid_argument(
       fmt::format("Simulation::wall: no wall is called '{}': there are {}", name,
                   names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
-}
-
-const WallState& WallControl::state() const {
-  return simulation_->walls()[wall_];
-}
-
-void WallControl::set_velocity(const Vec3& velocity) {
-  constexpr const char* kCall = "wall().set_velocity";
-  Simulation::Engine& engine = simulation_->between_steps(kCall);
-  const WallSpec& spec = engine.model_.walls[wall_];
-  if (spec.is_loaded)
-    throw InputError(
-        fmt::format("Simulation::{}: wall '{}' is moved by its load", kCall, spec.name),
-        "use set_load");
-  require_same(engine.communicator_, kCall, velocity);
-  require_plane(engine.model_, kCall, velocity);
-  engine.set_wall_velocity(wall_, velocity);
-}
-
-void WallControl::set_load(double load) {
-  constexpr const char* kCall = "wall().set_load";
-  Simulation::Engine& engine = simulation_->between_steps(kCall);
-  const WallSpec& spec = engine.model_.walls[wall_];
-  if (!spec.is_loaded)
-    throw InputError(fmt::format("Simulation::{}: wall '{}' is not loaded", kCall, spec.name),
-                     "give it a load and a mass in the model, or use set_velocity");
-  require_same(engine.communicator_, kCall, Vec3(load, 0.0, 0.0));
-  engine.set_wall_load(wall_, load);
 }
 
 State Simulation::save() {

@@ -45,8 +45,7 @@ Intruders intruders(const RunParts<Dim>& run, std::size_t w) {
 }  // namespace
 
 bool Stages::time_is_over(std::int64_t step) const {
-  const double dt = model_.time.step;
-  return static_cast<double>(step - begin_) * dt >= spec().max_time - 0.5 * dt;
+  return time_in_it(step) >= spec().max_time - 0.5 * model_.time.step;
 }
 
 bool Stages::may_end(std::int64_t step) const {

@@ -37,9 +37,13 @@ struct StateOf final : State::Data {
   std::vector<WallState> walls;
   std::vector<Vec3> walls_at_renewal;
   std::vector<double> loads;  ///< of walls
+  std::vector<Vec3> normals;  ///< of walls
   Vec3 gravity = Vec3::Zero();
+  ContactTable contacts;
   RebuildSchedule::Memory schedule;
   CheckpointState stages;  ///< the fields of stages alone
+  TimePoint since;
+  double dt = 0.0, last_dt = 0.0;
   std::int64_t num_particles = 0;
   LeftDomain left;
   typename Watch<Dim>::Memory watch;

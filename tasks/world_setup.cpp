@@ -18,7 +18,7 @@ World<Dim> make_world(const Model& model, const WorldScale& scale, VectorWidth w
   World<Dim> world;
   world.skin = scale.skin;
   world.range = contact_range_within(model.contacts, scale.reach - scale.skin);
-  world.dt = model.time.step;
+  world.dt = world.last_dt = model.time.step;
   world.accounts = model.output.energy;
   world.search = model.search.kind;
   world.num_particles = scale.num_particles;

@@ -30,7 +30,7 @@ template <int Dim>
   const bool is_quick = p.travel > radius;
   // So stiff that half the radius stops them, in steps of a fifth of the limit. A contact that was
   // too soft holds the energy of an overlap of the radius.
-  const double dt = run.world.dt, speed = p.travel / dt, kept = is_quick ? 0.0 : p.stiffness;
+  const double dt = run.world.last_dt, speed = p.travel / dt, kept = is_quick ? 0.0 : p.stiffness;
   const double stiffness = 4.0 * (p.mass * speed * speed / (radius * radius) + kept);
   const double remedy = 0.4 * std::sqrt(p.mass / std::max(stiffness, p.stiffness));
   const bool is_stiffer = stiffness > p.stiffness, is_shorter = 0.9 * remedy < dt;

@@ -122,7 +122,7 @@ std::unique_ptr<Sample<Dim>> make_sample(std::int64_t count, VectorWidth width, 
   auto sample = std::make_unique<Sample<Dim>>();
   World<Dim>& world = sample->world;
   world.skin = default_skin(deck.model, set);
-  world.dt = deck.model.time.step;
+  world.dt = world.last_dt = deck.model.time.step;
   world.num_particles = count;
   world.grid = Grid<Dim>(deck.model.domain, search_reach(deck.model, set, world.skin), count);
   world.laws = LawTable(deck.model.contacts);
@@ -155,7 +155,7 @@ std::unique_ptr<Sample<Dim>> make_sample(std::int64_t count, VectorWidth width, 
 template <int Dim>
 void step(Lane<Dim>& lane) {
   StepFrame frame;
-  frame.kick = lane.brick.world->dt;
+  frame.kick = frame.last_dt = lane.brick.world->dt;
   lane.step.begin(frame);
   for (int c = 0; c < lane.brick.num_chunks(); ++c) lane.step.run_chunk(c);
 }

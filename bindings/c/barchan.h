@@ -24,7 +24,7 @@ extern "C" {
 /* Of this header; barchan_version() is that of the library. A program runs with any library of the
  * same major version that is not older. */
 #define BARCHAN_ABI_MAJOR 0
-#define BARCHAN_ABI_MINOR 1
+#define BARCHAN_ABI_MINOR 2
 
 enum barchan_code {
   BARCHAN_OK = 0,
@@ -60,7 +60,9 @@ int barchan_close(barchan_sim* sim); /* [all]; ends its views; states are still 
 
 /* done: steps done, or NULL. Each [all]. */
 int barchan_run(barchan_sim* sim, int64_t steps, int64_t* done);
-int barchan_advance_to(barchan_sim* sim, double time, int64_t* done); /* the nearest step */
+/* Until it is `time` [s]: whole steps, and a shorter last one where one is needed. */
+int barchan_advance_to(barchan_sim* sim, double time, int64_t* done);
+int barchan_set_time_step(barchan_sim* sim, double step); /* of steps from now on [s] */
 
 typedef struct {
   double time, step_length; /* [s] */
@@ -89,8 +91,8 @@ enum barchan_field {
   BARCHAN_FORCE = 3,            /* the caller's load; gather and scatter only */
   BARCHAN_TORQUE = 4,           /* the same */
   BARCHAN_RADIUS = 5,
-  BARCHAN_MASS = 6, /* gather only */
-  BARCHAN_TYPE = 7, /* gather only; index of the material, from 0 */
+  BARCHAN_MASS = 6,          /* gather only */
+  BARCHAN_TYPE = 7,          /* gather only; index of the material, from 0 */
   BARCHAN_SURFACE_SPEED = 8, /* radius * angular velocity; views only, as what follows */
   BARCHAN_INVERSE_MASS = 9,  /* of a fixed particle 0 */
   BARCHAN_DENSITY = 10
@@ -109,6 +111,19 @@ int barchan_get_view(barchan_sim* sim, int brick, int field, barchan_view* view)
 int barchan_get_ids(barchan_sim* sim, int brick, const int64_t** ids, int64_t* size);
 int barchan_get_types(barchan_sim* sim, int brick, const uint8_t** types, int64_t* size);
 int barchan_get_loads(barchan_sim* sim, int brick, barchan_loads* loads);
+
+/* Contacts or bonds that count on this rank, with the forces that the next step finds in them. A
+ * copy, in any order. links: NULL, or with `room` for so many; count: how many there are. [all] */
+enum barchan_link_kind { BARCHAN_CONTACT = 0, BARCHAN_WALL_CONTACT = 1, BARCHAN_BOND = 2 };
+typedef struct {
+  int64_t first, second;      /* ids; of a contact with a wall its number in the deck, from 0 */
+  double normal[3];           /* from the first to the second */
+  double overlap;             /* [m]; of a bond by how much it is shorter than unstressed */
+  double normal_force;        /* above zero it pushes apart [N] */
+  double tangential_force[3]; /* on the first [N] */
+} barchan_link;
+int barchan_get_links(barchan_sim* sim, int kind, int64_t room, barchan_link* links,
+                      int64_t* count);
 
 /* ---- by id; torques may be NULL: zeros */
 int barchan_set_loads(barchan_sim* sim, int64_t count, const int64_t* ids, const double* forces,
@@ -132,8 +147,14 @@ typedef struct {
 int barchan_add(barchan_sim* sim, int64_t count, const barchan_particle* particles);
 int barchan_remove(barchan_sim* sim, int64_t count, const int64_t* ids);
 int barchan_set_gravity(barchan_sim* sim, const double gravity[3]);
+/* What two materials have together; numbers: one a line, such as "friction=0.3", under the keys of
+ * a deck. Others stay. */
+int barchan_set_contact(barchan_sim* sim, const char* a, const char* b, const char* numbers);
 int barchan_set_wall_velocity(barchan_sim* sim, const char* wall, const double velocity[3]);
 int barchan_set_wall_load(barchan_sim* sim, const char* wall, double load);
+/* Elsewhere at once; normal: NULL to keep it. */
+int barchan_set_wall_pose(barchan_sim* sim, const char* wall, const double point[3],
+                          const double normal[3]);
 
 typedef struct {
   double point[3], velocity[3];

@@ -63,6 +63,10 @@ int barchan_advance_to(barchan_sim* sim, double time, int64_t* done) {
   });
 }
 
+int barchan_set_time_step(barchan_sim* sim, double step) {
+  return with(sim, [&](Simulation& s) { s.set_time_step(step); });
+}
+
 int barchan_write_checkpoint(barchan_sim* sim, const char* folder) {
   return with(sim, [&](Simulation& s) {
     require(folder != nullptr, "barchan_write_checkpoint: the folder is NULL");
@@ -145,6 +149,28 @@ int barchan_get_loads(barchan_sim* sim, int brick, barchan_loads* loads) {
     const barchan::LoadView view = brick_of(s.loads(), brick);
     *loads = {view.forces().data(), view.torques_by_radius().data(),
               static_cast<int64_t>(view.size()), view.forces().stride()};
+  });
+}
+
+int barchan_get_links(barchan_sim* sim, int kind, int64_t room, barchan_link* links,
+                      int64_t* count) {
+  return with(sim, [&](Simulation& s) {
+    require(kind >= BARCHAN_CONTACT && kind <= BARCHAN_BOND,
+            "barchan_get_links: there is no such kind of links");
+    const auto all = s.links(static_cast<barchan::LinkKind>(kind));
+    const auto n = static_cast<int64_t>(all.size());
+    if (count != nullptr) *count = n;
+    if (links == nullptr) return;
+    require(room >= n, "barchan_get_links: there is no room for all links");
+    for (const barchan::LinkForce& from : all) {
+      barchan_link& to = *links++;
+      to.first = from.first;
+      to.second = from.second;
+      to.overlap = from.overlap;
+      to.normal_force = from.normal_force;
+      put(from.normal, to.normal);
+      put(from.tangential_force, to.tangential_force);
+    }
   });
 }
 

@@ -3,7 +3,12 @@
 #include <array>
 #include <memory>
 #include <span>
+#include <sstream>
+#include <string>
 #include <vector>
+
+#include <barchan/core/deck/overrides.hpp>
+#include <barchan/core/model/contact_numbers.hpp>
 
 #include "handle.hpp"
 
@@ -108,6 +113,29 @@ int barchan_set_gravity(barchan_sim* sim, const double gravity[3]) {
   return with(sim, [&](Simulation& s) { s.set_gravity(vector_of(gravity)); });
 }
 
+int barchan_set_contact(barchan_sim* sim, const char* a, const char* b, const char* numbers) {
+  return with(sim, [&](Simulation& s) {
+    require(a != nullptr && b != nullptr && numbers != nullptr,
+            "barchan_set_contact: a material or the numbers are NULL");
+    barchan::ContactConstants pair = s.contact(a, b);
+    std::istringstream lines(numbers);
+    for (std::string line; std::getline(lines, line);) {
+      if (line.empty()) continue;
+      const barchan::DeckOverride number = barchan::parse_override(line);
+      std::size_t end = 0;
+      double value = 0.0;
+      try {
+        value = std::stod(number.value, &end);
+      } catch (const std::exception&) {
+        end = 0;
+      }
+      require(end > 0 && end == number.value.size(), "barchan_set_contact: a value is no number");
+      barchan::set_number(s.model().contacts, pair, number.key, value);
+    }
+    s.set_contact(a, b, pair);
+  });
+}
+
 int barchan_set_wall_velocity(barchan_sim* sim, const char* wall, const double velocity[3]) {
   return with(sim, [&](Simulation& s) {
     require(wall != nullptr, "barchan_set_wall_velocity: the wall's name is NULL");
@@ -119,6 +147,17 @@ int barchan_set_wall_load(barchan_sim* sim, const char* wall, double load) {
   return with(sim, [&](Simulation& s) {
     require(wall != nullptr, "barchan_set_wall_load: the wall's name is NULL");
     s.wall(wall).set_load(load);
+  });
+}
+
+int barchan_set_wall_pose(barchan_sim* sim, const char* wall, const double point[3],
+                          const double normal[3]) {
+  return with(sim, [&](Simulation& s) {
+    require(wall != nullptr, "barchan_set_wall_pose: the wall's name is NULL");
+    if (normal == nullptr)
+      s.wall(wall).set_pose(vector_of(point));
+    else
+      s.wall(wall).set_pose(vector_of(point), vector_of(normal));
   });
 }
 

@@ -1,6 +1,10 @@
 // The calls of a simulation, without ornament: barchan/simulation.py has names, defaults and words.
 #include <array>
+#include <map>
 #include <stdexcept>
+#include <string>
+
+#include <barchan/core/model/contact_numbers.hpp>
 
 #include "handle.hpp"
 
@@ -56,10 +60,14 @@ py::dict info(Handle& h) {
 
 py::dict wall(Handle& h, const std::string& name) {
   using namespace py::literals;
-  const WallState w = h.call([&](Simulation& s) { return s.wall(name).state(); });
-  return py::dict("point"_a = three_of(w.point), "velocity"_a = three_of(w.velocity),
-                  "force"_a = three_of(w.force), "torque"_a = three_of(w.torque), "work"_a = w.work,
-                  "is_active"_a = w.is_active);
+  Vec3 normal;
+  const WallState w = h.call([&](Simulation& s) {
+    normal = s.wall(name).normal();
+    return s.wall(name).state();
+  });
+  return py::dict("point"_a = three_of(w.point), "normal"_a = three_of(normal),
+                  "velocity"_a = three_of(w.velocity), "force"_a = three_of(w.force),
+                  "torque"_a = three_of(w.torque), "work"_a = w.work, "is_active"_a = w.is_active);
 }
 
 py::object gather(Handle& h, ParticleField field) {
@@ -74,6 +82,29 @@ py::object gather(Handle& h, ParticleField field) {
   Ids ids(n, all.ids.data());
   if (width == 1) return py::make_tuple(ids, Reals(n, all.values.data()));
   return py::make_tuple(ids, Reals({n, py::ssize_t{width}}, all.values.data()));
+}
+
+py::dict links(Handle& h, LinkKind kind) {
+  const std::vector<LinkForce> all = h.call([&](Simulation& s) { return s.links(kind); });
+  const auto n = static_cast<py::ssize_t>(all.size());
+  py::array_t<std::int64_t> first(n), second(n);
+  py::array_t<double> overlap(n), normal_force(n), normal({n, py::ssize_t{3}}),
+      tangential_force({n, py::ssize_t{3}});
+  for (py::ssize_t i = 0; i < n; ++i) {
+    const LinkForce& link = all[static_cast<std::size_t>(i)];
+    first.mutable_at(i) = link.first;
+    second.mutable_at(i) = link.second;
+    overlap.mutable_at(i) = link.overlap;
+    normal_force.mutable_at(i) = link.normal_force;
+    for (int c = 0; c < 3; ++c) {
+      normal.mutable_at(i, c) = link.normal[c];
+      tangential_force.mutable_at(i, c) = link.tangential_force[c];
+    }
+  }
+  using namespace py::literals;
+  return py::dict("first"_a = first, "second"_a = second, "normals"_a = normal,
+                  "overlaps"_a = overlap, "normal_forces"_a = normal_force,
+                  "tangential_forces"_a = tangential_force);
 }
 
 /// Columns of one length each; the package has seen to that.
@@ -138,6 +169,9 @@ void define_simulation(py::module_& m) {
       .def("measure", &measure)
       .def("wall", &wall)
       .def("gather", &gather)
+      .def("links", &links)
+      .def("set_time_step",
+           [](Handle& h, double dt) { h.change([&](S& s) { s.set_time_step(dt); }); })
       .def("run",
            [](Handle& h, std::int64_t n) { return h.change([&](S& s) { return s.run(n); }); })
       .def("advance_to",
@@ -167,12 +201,26 @@ void define_simulation(py::module_& m) {
            [](Handle& h, const Ids& ids) { h.change([&](S& s) { s.remove(span_of(ids)); }); })
       .def("set_gravity",
            [](Handle& h, const Three& g) { h.change([&](S& s) { s.set_gravity(vector_of(g)); }); })
+      .def("set_contact",
+           [](Handle& h, const std::string& a, const std::string& b,
+              const std::map<std::string, double>& numbers) {
+             h.call([&](S& s) {
+               ContactConstants pair = s.contact(a, b);
+               for (const auto& [key, value] : numbers)
+                 set_number(s.model().contacts, pair, key, value);
+               s.set_contact(a, b, pair);
+             });
+           })
       .def("set_wall_velocity",
            [](Handle& h, const std::string& name, const Three& v) {
              h.change([&](S& s) { s.wall(name).set_velocity(vector_of(v)); });
            })
       .def("set_wall_load", [](Handle& h, const std::string& name,
                                double load) { h.call([&](S& s) { s.wall(name).set_load(load); }); })
+      .def("set_wall_pose",
+           [](Handle& h, const std::string& name, const Three& point, const Three& normal) {
+             h.change([&](S& s) { s.wall(name).set_pose(vector_of(point), vector_of(normal)); });
+           })
       .def("save", [](Handle& h, State& state) { h.call([&](S& s) { s.save(state); }); })
       .def("load", [](Handle& h, const State& state) { h.change([&](S& s) { s.load(state); }); })
       .def("write_checkpoint",
@@ -204,6 +252,10 @@ void define_calls(py::module_& m) {
       .value("radius", F::Radius)
       .value("mass", F::Mass)
       .value("type", F::Type);
+  py::enum_<LinkKind>(m, "LinkKind")
+      .value("contacts", LinkKind::Contacts)
+      .value("wall_contacts", LinkKind::WallContacts)
+      .value("bonds", LinkKind::Bonds);
   py::class_<State>(m, "State")
       .def(py::init<>())
       .def_property_readonly("step", &State::step)

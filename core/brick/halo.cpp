@@ -60,7 +60,7 @@ void unpack_halo(Brick<Dim>& brick, int link, std::span<const std::byte> message
     const double* v = store.v(g);
     top2 = std::max(top2, v[0] * v[0] + v[1] * v[1] + (Dim == 3 ? v[2] * v[2] : 0.0));
   }
-  const double travel = std::sqrt(top2) * brick.world->dt;
+  const double travel = std::sqrt(top2) * brick.world->last_dt;
   mine.travel += travel;
   mine.has_quick = travel > brick.world->quick_travel;
   Band& band = brick.band(mine.side);

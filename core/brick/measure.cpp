@@ -164,7 +164,7 @@ std::vector<WallSums> measure_walls(const Brick<Dim>& brick) {
   const World<Dim>& world = *brick.world;
   std::vector<WallSums> sums(world.walls.size());
   for (std::size_t w = 0; w < brick.wall_sums.size(); ++w) sums[w].work = brick.wall_sums[w].work;
-  brick.walls.measure(brick.store, {world.wall_view(), &world.laws, world.dt}, sums);
+  brick.walls.measure(brick.store, {world.wall_view(), &world.laws, world.last_dt}, sums);
   return sums;
 }
 
@@ -194,7 +194,7 @@ double distance2_of_last_step(const Brick<Dim>& brick) {
   for (std::int32_t i = 0; i < store.num_owned; ++i) {
     const double* from = store.reference.data() + std::size_t{Dim} * static_cast<std::size_t>(i);
     double before[Dim];
-    for (int c = 0; c < Dim; ++c) before[c] = store.x(i)[c] - brick.world->dt * store.v(i)[c];
+    for (int c = 0; c < Dim; ++c) before[c] = store.x(i)[c] - brick.world->last_dt * store.v(i)[c];
     most = std::max(most, distance2<Dim>(brick.world->grid.box(), from, before));
   }
   return most;

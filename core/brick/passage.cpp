@@ -103,7 +103,7 @@ double PassageWatch<Dim>::stiffness(std::uint8_t code, const Overlap& overlap) c
 
 template <int Dim>
 void PassageWatch<Dim>::look_at(const PairList& pairs) const {
-  const double dt = world_.dt;
+  const double dt = world_.last_dt;
   const PeriodicBox& box = world_.grid.box();
   for (std::size_t k = 0; k < pairs.i.size(); ++k) {
     const std::int32_t i = pairs.i[k], j = pairs.j[k];
@@ -143,7 +143,7 @@ void PassageWatch<Dim>::look_at(std::span<const WallContact<Dim>> contacts, Rows
     const double *x = store_.x(it->row), *v = store_.v(it->row), radius = store_.radius(it->row);
     double s[3] = {}, s2 = 0.0;
     for (int c = 0; c < Dim; ++c) {
-      s[c] = world_.dt * (v[c] - world_.walls[w].velocity[c]);
+      s[c] = world_.last_dt * (v[c] - world_.walls[w].velocity[c]);
       s2 += s[c] * s[c];
     }
     const auto foot = [&](double back) {

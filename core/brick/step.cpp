@@ -21,9 +21,9 @@ double quick_speed(const World<Dim>& world) {
 }
 
 template <int Dim>
-void judge_speeds(Brick<Dim>& brick, Rows rows) {
+void judge_speeds(Brick<Dim>& brick, double dt, Rows rows) {
   const World<Dim>& world = *brick.world;
-  const double travel = farthest_travel(brick.store, world.dt, rows);
+  const double travel = farthest_travel(brick.store, dt, rows);
   brick.is_fast = brick.is_fast || !(travel <= world.most_travel(brick.skin));
   brick.has_quick = brick.has_quick || travel > world.quick_travel;
 }
@@ -43,7 +43,7 @@ PairJob Step<Dim>::job(PairList& list, PairBlock& block, double travel) {
   job.history = list.history.data();
   job.begin = block.begin;
   job.end = block.end;
-  job.dt = spring_step(frame_);
+  job.dt = frame_.last_dt;
   job.box = brick_.world->grid.box();
   job.laws = brick_.world->laws.view();
   if (brick_.world->packs()) pick_touching(brick_, list, block, travel, job);
@@ -62,10 +62,10 @@ void Step<Dim>::begin(const StepFrame& frame) {
   const World<Dim>& world = *brick_.world;
   frame_ = frame;
   wraps_ = world.grid.box().any() && (frame.step + 1) % kEventSteps == 0;
-  brick_.step_travel = brick_.speeds.top * world.dt;
+  brick_.step_travel = brick_.speeds.top * world.last_dt;
   brick_.travel += brick_.step_travel;
   brick_.speeds = {};
-  looks_ = std::exchange(brick_.has_quick, false) && frame_.has_moved(world.dt);
+  looks_ = std::exchange(brick_.has_quick, false) && frame_.has_moved();
   if (world.search == ContactSearchKind::AllPairs) lists_.search_owned_again();
   if (looks_) PassageWatch<Dim>(world, brick_.store, brick_.passage).look_at(brick_.pairs);
   rows_done_ = brick_.interior.begin;
@@ -101,7 +101,7 @@ void Step<Dim>::run_block(RowBlock& block) {
 template <int Dim>
 void Step<Dim>::add_extras(Rows rows) {
   ParticleStore<Dim>& store = brick_.store;
-  if (frame_.has_moved(brick_.world->dt))
+  if (frame_.has_moved())
     PassageWatch<Dim>(*brick_.world, store, brick_.passage).look_at(brick_.walls.list(), rows);
   const auto book = [&](EnergyWorks::Part part) {
     if (brick_.world->accounts) account_.book(store, part);
@@ -155,7 +155,7 @@ void Step<Dim>::advance_rows(Rows rows, bool has_extras) {
       frame_.local_damping != 0.0 ? world.kernels.rows_damped : world.kernels.rows;
   const RowSpeeds speeds = advance(job);
   brick_.speeds.add(speeds);
-  if (speeds.is_beyond) judge_speeds(brick_, rows);
+  if (speeds.is_beyond) judge_speeds(brick_, world.dt, rows);
 }
 
 /// At fixed steps, for what a position loses around the end of the box is part of the state.
@@ -172,7 +172,7 @@ void Step<Dim>::finish_band(Side side) {
   const World<Dim>& world = *brick_.world;
   Band& band = brick_.band(side);
   if (world.search == ContactSearchKind::AllPairs) lists_.search_across_again(side);
-  if (looks_ || (band.has_quick && frame_.has_moved(world.dt)))
+  if (looks_ || (band.has_quick && frame_.has_moved()))
     PassageWatch<Dim>(world, brick_.store, brick_.passage).look_at(band.across);
   // Bonds come before contacts here too, as in begin: a pair whose bond breaks is in contact in the
   // same step.
@@ -193,8 +193,8 @@ void Step<Dim>::finish_right_band(std::span<const double> results) {
 template <int Dim>
 void Step<Dim>::compute_bonds(typename BondSet<Dim>::Group group) {
   const World<Dim>& world = *brick_.world;
-  const auto broken = brick_.bonds.compute(group, brick_.store, world.bond_laws, world.grid.box(),
-                                           spring_step(frame_));
+  const auto broken =
+      brick_.bonds.compute(group, brick_.store, world.bond_laws, world.grid.box(), frame_.last_dt);
   if (broken.empty()) return;
   // Laws change. Bonds across a cut are pairs across it.
   if (group == BondSet<Dim>::Owned) {
@@ -220,11 +220,11 @@ void Step<Dim>::unbind(std::int32_t bond) {
 template <int Dim>
 void find_quick(Brick<Dim>& brick) {
   brick.has_quick = false;
-  judge_speeds(brick, {0, brick.store.num_owned});
+  judge_speeds(brick, brick.world->last_dt, {0, brick.store.num_owned});
   for (Band& band : brick.bands) band.has_quick = false;
   for (BrickLink<Dim>& link : brick.links) {
     link.has_quick =
-        farthest_travel(brick.store, brick.world->dt, link.ghosts) > brick.world->quick_travel;
+        farthest_travel(brick.store, brick.world->last_dt, link.ghosts) > brick.world->quick_travel;
     Band& band = brick.band(link.side);
     band.has_quick = band.has_quick || link.has_quick;
   }

@@ -32,12 +32,8 @@ class Step {
   void finish_right_band(std::span<const double> results);
 
  private:
-  /// Time over which springs stretch.
-  [[nodiscard]] double spring_step(const StepFrame& frame) const {
-    return frame.has_moved(brick_.world->dt) ? brick_.world->dt : 0.0;
-  }
   [[nodiscard]] typename WallContacts<Dim>::Frame wall_frame(const StepFrame& frame) const {
-    return {brick_.world->wall_view(), &brick_.world->laws, spring_step(frame)};
+    return {brick_.world->wall_view(), &brick_.world->laws, frame.last_dt};
   }
   /// The pairs of a block that are worked on.
   [[nodiscard]] PairJob job(PairList& list, PairBlock& block, double travel);

@@ -38,7 +38,8 @@ struct World {
   double range = 0.0;  ///< beyond touch, up to which the law's contacts may hold [m]
   /// Half of the smallest radius: where nothing moves farther in a step, no contact is skipped [m].
   double quick_travel = std::numeric_limits<double>::infinity();
-  double dt = 0.0;        ///< [s]
+  double dt = 0.0;        ///< of the coming step, or of the one under way [s]
+  double last_dt = 0.0;   ///< of the step before; before the first one dt [s]
   bool accounts = false;  ///< for where energy goes (energy_works.hpp)
   std::int64_t num_particles = 0;
 
@@ -78,12 +79,12 @@ inline constexpr std::int64_t kEventSteps = 16;
 
 /// What changes from step to step.
 struct StepFrame {
-  double kick = 0.0;           ///< dt, or dt/2 in the first step [s]
-  double gravity[3] = {};      ///< [m/s²]
+  double kick = 0.0;       ///< half of the last step and half of this one: dt, at first dt/2 [s]
+  double gravity[3] = {};  ///< [m/s²]
   double local_damping = 0.0;  ///< of the stage (Stage)
   std::int64_t step = 0;
-  /// In the first step, known by its half kick, nothing has moved yet.
-  [[nodiscard]] bool has_moved(double dt) const { return kick >= dt; }
+  double last_dt = 0.0;  ///< of the step before: springs stretch over it [s]; in the first step 0
+  [[nodiscard]] bool has_moved() const { return last_dt > 0.0; }
 };
 
 }  // namespace barchan

@@ -37,6 +37,11 @@ CheckpointState take_state(ByteReader& in) {
   s.left = in.take<LeftDomain>();
   s.walls = in.take_counted<SavedWall>();
   s.fingerprint = in.take_counted<std::uint64_t>();
+  if (!in.empty()) {
+    s.since = in.take<TimePoint>();
+    s.stage_since = in.take<TimePoint>();
+    s.last_dt = in.take<double>();
+  }
   in.finish();
   return s;
 }
@@ -102,6 +107,11 @@ std::vector<std::byte> encode(const CheckpointState& s) {
   out.put(s.left);
   out.put_counted(s.walls);
   out.put_counted(s.fingerprint);
+  if (s.last_dt > 0.0) {
+    out.put(s.since);
+    out.put(s.stage_since);
+    out.put(s.last_dt);
+  }
   return bytes;
 }
 
@@ -114,12 +124,17 @@ CheckpointState decode_state(std::span<const std::byte> bytes, const std::string
     refuse(file, std::string("the state is not valid: ") + e.what(), "take another checkpoint");
   }
   const auto positive = [](double v) { return std::isfinite(v) && v > 0.0; };
+  const auto is_before = [&](const TimePoint& p) {
+    return std::isfinite(p.time) && p.step >= 0 && p.step <= state.step;
+  };
   const bool is_sane =
       state.step >= 0 && state.stage >= 0 && state.stage_begin >= 0 &&
       state.stage_begin <= state.step && state.skin >= 0.0 && std::isfinite(state.skin) &&
       positive(state.reach) && state.start_particles >= 0 && positive(state.grain) &&
       state.overlap_limit > 0.0 && state.look.step >= -1 && state.look.step <= state.step &&
-      (state.look.step < 0 || state.step - state.look.step < kEventSteps);
+      (state.look.step < 0 || state.step - state.look.step < kEventSteps) &&
+      is_before(state.since) && is_before(state.stage_since) && state.last_dt >= 0.0 &&
+      std::isfinite(state.last_dt);
   if (!is_sane) refuse(file, "the state is not valid", "take another checkpoint");
   return state;
 }

@@ -26,6 +26,15 @@ struct PendingLook {
   double overlap = 0.0;      ///< share of the smaller radius
 };
 
+/// A time that steps are counted from: since then all are of one length.
+struct TimePoint {
+  double time = 0.0;      ///< [s]
+  std::int64_t step = 0;  ///< that begins then
+  [[nodiscard]] double at(std::int64_t later, double dt) const {
+    return time + static_cast<double>(later - step) * dt;
+  }
+};
+
 /// What a checkpoint keeps beside particles, contacts and bonds; the same on all ranks.
 struct CheckpointState {
   std::int64_t step = 0, stage_begin = 0;
@@ -41,6 +50,9 @@ struct CheckpointState {
 
   PendingLook look;
   LeftDomain left;
+  /// Where steps have not been of one length; last_dt = 0: they have.
+  TimePoint since, stage_since;
+  double last_dt = 0.0;  ///< of the step before [s]
   std::vector<SavedWall> walls;
   std::vector<std::uint64_t> fingerprint;  ///< of the model, see below
 };

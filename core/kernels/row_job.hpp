@@ -13,8 +13,9 @@ namespace barchan {
 ///   v  += dv
 ///   x  += dt·v                    leapfrog: v is half a step behind x
 ///
-/// `kick` is dt, and dt/2 in the first step of a run, which makes the scheme second order from the
-/// start. Source: Cundall & Strack 1979; local damping: Cundall 1987.
+/// `kick` is the time between the two velocities: half of the last step and half of this one. So it
+/// is dt, and dt/2 in the first step of a run, which makes the scheme second order from the start.
+/// Source: Cundall & Strack 1979; local damping: Cundall 1987.
 struct RowJob {
   double* motion = nullptr;
   double* spin = nullptr;

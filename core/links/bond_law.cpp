@@ -153,6 +153,35 @@ double BondSet<Dim>::energy(std::int32_t index, const ParticleStore<Dim>& store,
            0.5 * q[6] * q[6] / s.twisting;
 }
 
+template <int Dim>
+typename BondSet<Dim>::Pull BondSet<Dim>::pull(std::int32_t index, const ParticleStore<Dim>& store,
+                                               std::span<const BondLaw> laws,
+                                               const PeriodicBox& box, double dt) const {
+  const auto& bond = bonds_[static_cast<std::size_t>(index)];
+  const BondLaw& law = laws[static_cast<std::size_t>(bond.law)];
+  const Ends<Dim> ends(store, end_a(index), end_b(index), bond.length, box, law.damping_ratio);
+  Pull pull;
+  pull.extension = ends.extension;
+  for (int c = 0; c < Dim; ++c) pull.towards[c] = ends.normal[c];
+  if (ends.dashpot.inverse_mass == 0.0) return pull;
+  const BondSection section = bond_section<Dim>(law, bond.length, ends.r_a, ends.r_b);
+  auto state = bond.state;
+  std::array<Record, 2> out{};
+  bool holds = false;
+  if constexpr (Dim == 2)
+    holds = respond_2d(ends, law, section, dt, state, out);
+  else
+    holds = respond_3d(ends, law, section, dt, state, out);
+  for (int c = 0; c < Dim && holds; ++c) pull.force[c] = out[0][static_cast<std::size_t>(c)];
+  return pull;
+}
+
+template BondSet<2>::Pull BondSet<2>::pull(std::int32_t, const ParticleStore<2>&,
+                                           std::span<const BondLaw>, const PeriodicBox&,
+                                           double) const;
+template BondSet<3>::Pull BondSet<3>::pull(std::int32_t, const ParticleStore<3>&,
+                                           std::span<const BondLaw>, const PeriodicBox&,
+                                           double) const;
 template bool BondSet<2>::respond(std::int32_t, const ParticleStore<2>&, const BondLaw&,
                                   const PeriodicBox&, double);
 template bool BondSet<3>::respond(std::int32_t, const ParticleStore<3>&, const BondLaw&,

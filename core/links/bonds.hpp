@@ -105,6 +105,15 @@ class BondSet {
   /// Elastic energy of the bonds whose lower-id end is owned [J].
   [[nodiscard]] double energy(std::int32_t bond, const ParticleStore<Dim>& store,
                               std::span<const BondLaw> laws, const PeriodicBox& box) const;
+  /// What a bond does to its first end.
+  struct Pull {
+    Vec3 towards = Vec3::Zero();  ///< from the first end to the second, unit
+    double extension = 0.0;       ///< beyond the unstressed length [m]
+    Vec3 force = Vec3::Zero();    ///< zero where it is about to break [N]
+  };
+  /// As the next forces will have it; changes no state.
+  [[nodiscard]] Pull pull(std::int32_t bond, const ParticleStore<Dim>& store,
+                          std::span<const BondLaw> laws, const PeriodicBox& box, double dt) const;
   [[nodiscard]] std::size_t bytes() const;
 
  private:

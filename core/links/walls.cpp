@@ -234,6 +234,23 @@ void WallContacts<Dim>::measure(const ParticleStore<Dim>& store, const Frame& fr
   }
 }
 
+template <int Dim>
+std::vector<WallPush> WallContacts<Dim>::pushes(const ParticleStore<Dim>& store,
+                                                const Frame& frame) const {
+  std::vector<WallPush> all;
+  for (std::size_t k = 0; k < list_.size(); ++k) {
+    WallContact<Dim> contact = list_[k];
+    const Push p = push(store, frame, k, contact);
+    if (p.on_wall.isZero(0.0)) continue;
+    const Vec3& normal = frame.walls.specs[static_cast<std::size_t>(contact.wall)].normal;
+    const WallFoot foot = foot_of(store, frame.walls, contact);
+    const double radius = store.radius(contact.row);
+    all.push_back({contact.row, contact.wall, approach_of(foot, normal, radius).to_wall,
+                   radius - foot.distance, -1.0 * p.on_wall});
+  }
+  return all;
+}
+
 template class WallContacts<2>;
 template class WallContacts<3>;
 

@@ -36,6 +36,14 @@ struct WallSums {
   void add(const WallSums& other);
 };
 
+/// A particle that a wall pushes or holds.
+struct WallPush {
+  std::int32_t row = 0, wall = 0;
+  Vec3 to_wall = Vec3::Zero();  ///< from the particle's centre [m]
+  double overlap = 0.0;         ///< [m]
+  Vec3 force = Vec3::Zero();    ///< on the particle [N]
+};
+
 /// A particle near an image of a wall, with the history of their contact.
 template <int Dim>
 struct WallContact {
@@ -121,6 +129,9 @@ class WallContacts {
                    std::int32_t begin, std::int32_t end);
   /// Force and torque on all walls as the next step will find them; changes no history.
   void measure(const ParticleStore<Dim>& store, const Frame& frame, std::span<WallSums> sums) const;
+  /// The same, contact by contact.
+  [[nodiscard]] std::vector<WallPush> pushes(const ParticleStore<Dim>& store,
+                                             const Frame& frame) const;
 
  private:
   using Force = PairForce<simd::Scalar, Dim>;  ///< on the particle

@@ -58,7 +58,10 @@ def course(barchan, comm, excursions, by_id=False):
         sim.walls["ceiling"].set_velocity([0.0, -0.5])
         sim.set_gravity([0.0, -4.0])
         sim.scatter("velocity", ids, [[0.0, -1.0], [0.0, 1.0]])
-        sim.run(40)
+        sim.walls["ceiling"].set_pose([0.0, 1.05], [0.02, -1.0])
+        sim.set_contact("sand", "sand", friction=0.1, restitution=0.9)
+        sim.set_time_step(1.3e-4)
+        sim.advance_to(sim.time + 0.00777)
         return sim.digest()
 
 
@@ -92,6 +95,22 @@ def views(barchan):
     assert np.array_equal(now, kept)
 
 
+def links(barchan):
+    """What lies on the floor presses it with the weight of all once it rests."""
+    import numpy as np
+    with barchan.Simulation(DECK, set={"gravity": [0, -9.81], "particles.1.region.hi": [4, 0.1]}) as sim:
+        assert len(sim.bonds()) == 0
+        sim.advance_to(0.40003)
+        assert sim.time == 0.40003
+        floor, pairs = sim.wall_contacts(), sim.contacts()
+        assert len(pairs) > 0 and pairs.normals.shape == (len(pairs), 3) and (pairs.first < pairs.second).all()
+        assert np.allclose(np.linalg.norm(pairs.normals, axis=1), 1.0)
+        weight = 9.81 * sim.gather("mass")[1].sum()
+        pressed = floor.normal_forces[floor.second == 0].sum()
+        assert abs(pressed - weight) < 0.02 * weight, (pressed, weight)
+        assert np.allclose(floor.normals[:, 1], -1.0) and np.array_equal(sim.walls["floor"].normal, [0, 1, 0])
+
+
 def wrong_calls(barchan):
     raises(barchan.InputError, "no.toml", lambda: barchan.Simulation("no.toml"))
     raises(barchan.InputError, "stepp", lambda: barchan.Simulation(DECK, set={"time.stepp": 1}))
@@ -106,6 +125,10 @@ def wrong_calls(barchan):
         raises(ValueError, "no material", lambda: sim.add([0, 0], 0.1, material="gold"))
         raises(ValueError, "types of materials", lambda: sim.add([0, 0], 0.1, material=7))
         raises(barchan.InputError, "into wall 'floor'", lambda: sim.add([1.0, 0.001], 0.02))
+        raises(barchan.InputError, "unstable", lambda: sim.set_time_step(1.0))
+        raises(barchan.InputError, "wall 'floor'", lambda: sim.walls["floor"].set_pose([0, 0.3]))
+        raises(barchan.InputError, "there are friction", lambda: sim.set_contact("sand", "sand", stiff=1.0))
+        raises(ValueError, "no material is called 'gold'", lambda: sim.set_contact("sand", "gold", friction=1))
         raises(KeyError, "lid", lambda: sim.walls["lid"])
         raises(barchan.InputError, "not loaded", lambda: sim.walls["floor"].set_load(1.0))
         raises(RuntimeError, "empty", lambda: sim.load(barchan.State()))
@@ -177,6 +200,7 @@ def main():
     expected = course(barchan, None, excursions=False)
     assert found["world"] == {expected} and found["mpi4py"] <= {expected}, f"{found}, and {expected} on one rank"
     views(barchan)
+    links(barchan)
     wrong_calls(barchan)
     from_dicts_and_files(barchan, sys.argv[1])
     help_text = barchan.Simulation.__doc__ + barchan.Simulation.run.__doc__

@@ -60,9 +60,38 @@ static void wrong_calls(barchan_sim* sim, const char* deck, int comm) {
   expect_error(barchan_get_view(sim, 99, BARCHAN_RADIUS, &view), BARCHAN_WRONG_CALL, "brick");
   expect_error(barchan_get_view(sim, 0, BARCHAN_FORCE, &view), BARCHAN_WRONG_CALL, "no array");
   expect_error(barchan_get_view(sim, 0, BARCHAN_RADIUS, NULL), BARCHAN_WRONG_CALL, "NULL");
+  expect_error(barchan_set_time_step(sim, 1.0), BARCHAN_WRONG_INPUT, "unstable");
+  expect_error(barchan_set_wall_pose(sim, "floor", NULL, NULL), BARCHAN_WRONG_CALL, "NULL");
+  expect_error(barchan_set_wall_pose(sim, "floor", zeros, zeros), BARCHAN_WRONG_INPUT, "no length");
+  expect_error(barchan_set_contact(sim, "sand", "gold", ""), BARCHAN_WRONG_CALL, "gold");
+  expect_error(barchan_set_contact(sim, "sand", "sand", "mu=1"), BARCHAN_WRONG_INPUT, "'mu'");
+  expect_error(barchan_get_links(sim, 7, 0, NULL, NULL), BARCHAN_WRONG_CALL, "kind");
   int major = -1;
   barchan_abi(&major, NULL);
   expect(major == BARCHAN_ABI_MAJOR, "the library is of another ABI");
+}
+
+/* Contacts with the floor, and steps of other lengths. */
+static void press(barchan_sim* sim) {
+  const double below[3] = {0.0, -0.002, 0.0};
+  int64_t count = 0, again = 0;
+  expect(barchan_set_wall_pose(sim, "floor", below, NULL) == BARCHAN_OK, "set_wall_pose");
+  expect(
+      barchan_set_contact(sim, "sand", "sand", "friction=0.1\nnormal_stiffness=1e5") == BARCHAN_OK,
+      "set_contact");
+  expect(barchan_set_time_step(sim, 1.5e-4) == BARCHAN_OK, "set_time_step");
+  expect(barchan_advance_to(sim, 0.0301, NULL) == BARCHAN_OK, "advance_to");
+  barchan_info info;
+  expect(barchan_get_info(sim, &info) == BARCHAN_OK && info.time == 0.0301, "the time itself");
+  expect(barchan_get_links(sim, BARCHAN_CONTACT, 0, NULL, &count) == BARCHAN_OK, "how many links");
+  barchan_link* links = malloc((size_t)(count + 1) * sizeof *links);
+  expect(barchan_get_links(sim, BARCHAN_CONTACT, count, links, &again) == BARCHAN_OK, "links");
+  expect(count == again, "two counts of links");
+  for (int64_t k = 0; k < again; ++k) {
+    expect(links[k].first < links[k].second && links[k].overlap > 0.0, "a link");
+    expect(links[k].normal_force >= 0.0, "a contact that pulls");
+  }
+  free(links);
 }
 
 int main(int argc, char** argv) {
@@ -86,6 +115,7 @@ int main(int argc, char** argv) {
     int64_t done = 0;
     expect(barchan_run(sim, 20, &done) == BARCHAN_OK && done == 20, "run");
   }
+  press(sim);
   expect(barchan_free_state(state) == BARCHAN_OK, "free");
   expect_error(barchan_load(sim, state), BARCHAN_WRONG_CALL, "no such state");
   uint64_t digest = 0;

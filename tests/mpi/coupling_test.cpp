@@ -213,19 +213,6 @@ TEST(Coupling, TheLoadOfAPlateMayChangeInTheCourse) {
   });
 }
 
-TEST(Coupling, AdvancesToTheNearestStep) {
-  const Scenario s = dragged(2);
-  Simulation sim(s.model, s.set, MPI_COMM_WORLD, with_threads(1));
-  const double dt = s.model.time.step;
-  EXPECT_EQ(sim.advance_to(10.4 * dt), 10);
-  EXPECT_EQ(sim.advance_to(10.2 * dt), 0);
-  EXPECT_EQ(sim.advance_to(12.9 * dt), 3);
-  expect_words(words_thrown<std::invalid_argument>([&] { sim.advance_to(2.0 * dt); }),
-               "advance_to");
-  expect_words(words_thrown<std::invalid_argument>([&] { sim.advance_to(std::nan("")); }),
-               "advance_to");
-}
-
 TEST(Coupling, RefusesWrongCallsInWords) {
   Scenario s = rough_bed();
   add_wall(s.model, {0.0, 0.0, 0.0}, {0.0, 1.0, 0.0});

@@ -17,7 +17,7 @@ MPI_COMM_WORLD. All quantities are in SI units.
 """
 from ._barchan import InputError, RunEnded, RunError, StaleView, State, version as __version__
 from .results import Run, read
-from .simulation import Measures, Simulation, Wall
+from .simulation import Links, Measures, Simulation, Wall
 
-__all__ = ["InputError", "Measures", "Run", "RunEnded", "RunError", "Simulation", "StaleView", "State", "Wall",
+__all__ = ["InputError", "Links", "Measures", "Run", "RunEnded", "RunError", "Simulation", "StaleView", "State", "Wall",
            "read", "__version__"]

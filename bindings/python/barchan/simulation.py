@@ -10,7 +10,7 @@ import numpy as np
 from . import _barchan
 from ._toml import deck_text, value_text
 
-__all__ = ["Measures", "Simulation", "Wall"]
+__all__ = ["Links", "Measures", "Simulation", "Wall"]
 
 Vector = Union[Sequence[float], np.ndarray]
 
@@ -30,10 +30,24 @@ class Measures:
     max_speed: float  #: [m/s]
 
 
+@dataclasses.dataclass(frozen=True)
+class Links:
+    """Contacts or bonds that count on this rank, in any order, with the forces that the next step finds in them."""
+    first: np.ndarray  #: (n) ids; of two particles the lower one
+    second: np.ndarray  #: (n) ids; of contacts with walls the wall's place in `sim.walls`, from 0
+    normals: np.ndarray  #: (n, 3) from the first to the second, of length 1
+    overlaps: np.ndarray  #: (n) [m]; of a bond by how much it is shorter than unstressed
+    normal_forces: np.ndarray  #: (n) above zero they push the two apart [N]
+    tangential_forces: np.ndarray  #: (n, 3) on the first; the second feels the opposite [N]
+
+    def __len__(self) -> int:
+        return len(self.first)
+
+
 class Wall:
     """A wall of a simulation: where it is, what acts on it, and how it moves.
 
-    `point` [m], `velocity` [m/s]; `force` [N], `torque` about the point [N·m] and `work` [J] are those of the last
+    `point` [m], `normal`, `velocity` [m/s]; `force` [N], `torque` about the point [N·m] and `work` [J] are those of the last
     measure().
     """
 
@@ -41,8 +55,8 @@ class Wall:
         self._simulation, self.name = simulation, name
 
     def __getattr__(self, name: str):
-        if name not in ("point", "velocity", "force", "torque", "work", "is_active"):
-            raise AttributeError(f"a wall has no {name!r}: point, velocity, force, torque, work, is_active")
+        if name not in ("point", "normal", "velocity", "force", "torque", "work", "is_active"):
+            raise AttributeError(f"a wall has no {name!r}: point, normal, velocity, force, torque, work, is_active")
         value = self._simulation._inside.wall(self.name)[name]
         return np.array(value) if isinstance(value, list) else value
 
@@ -54,6 +68,14 @@ class Wall:
         """Of a loaded plate, along its normal [N/m²]. Collective; the same on every rank."""
         self._simulation._inside.set_wall_load(self.name, float(load))
 
+    def set_pose(self, point: Vector, normal: Optional[Vector] = None) -> None:
+        """Puts it elsewhere at once [m]; normal: of any length, None: as it is. Collective; the same on every rank.
+
+        Raises:
+            InputError: a particle would reach into the wall by more than half of its radius; nothing has changed.
+        """
+        self._simulation._inside.set_wall_pose(self.name, _three(point), _three(self.normal if normal is None else normal))
+
     def __repr__(self) -> str:
         return f"<wall {self.name!r} at {self.point}>"
 
@@ -61,10 +83,11 @@ class Wall:
 class Simulation:
     """A simulation on all ranks of a communicator.
 
-    Construction, run, advance_to, measure, digest, gather, scatter, add, remove, set_gravity, walls' set_..., save, load,
-    write_checkpoint and close are collective: all ranks call them in the same order. The rest is local. One thread at a time.
+    Construction, run, advance_to, set_time_step, measure, digest, gather, scatter, contacts, wall_contacts, bonds, add,
+    remove, set_gravity, set_contact, walls' set_..., save, load, write_checkpoint and close are collective: all ranks call them in the same order. The rest is local. One thread at a time.
 
-    Views are of a moment: run(), load(), add(), remove(), scatter(), set_gravity() and clear_loads() end it. A view
+    Views are of a moment: run(), load(), add(), remove(), scatter(), set_gravity(), set_time_step(),
+    set_pose() and clear_loads() end it. A view
     then raises StaleView. An array that came from it stays safe: it keeps the values of its moment, and cannot be written.
 
     Args:
@@ -148,8 +171,16 @@ class Simulation:
         return self._inside.run(steps)
 
     def advance_to(self, time: float) -> int:
-        """Runs to the step nearest to `time` [s]. Returns steps done."""
+        """Runs until it is `time` [s]: whole steps, and a shorter last one where one is needed. Returns steps done."""
         return self._inside.advance_to(time)
+
+    def set_time_step(self, dt: float) -> None:
+        """The length of steps from now on [s]. Collective; the same on every rank.
+
+        Raises:
+            InputError: not above zero, or unstable; nothing has changed.
+        """
+        self._inside.set_time_step(float(dt))
 
     def measure(self) -> Measures:
         """Energies, contacts, overlap, momentum of all ranks; afterwards walls know their forces."""
@@ -202,6 +233,21 @@ class Simulation:
         rows = _turns if field in ("angular_velocity", "torque") else _vectors
         self._inside.scatter(what, ids, rows(values, len(ids), "values"))
 
+    def contacts(self) -> Links:
+        """Pairs of particles that touch, or hold each other from afar. A copy. Collective."""
+        return self._links("contacts")
+
+    def wall_contacts(self) -> Links:
+        """Particles that walls push or hold. A copy. Collective."""
+        return self._links("wall_contacts")
+
+    def bonds(self) -> Links:
+        """Whole bonds. A copy. Collective."""
+        return self._links("bonds")
+
+    def _links(self, kind: str) -> Links:
+        return Links(**self._inside.links(_barchan.LinkKind.__members__[kind]))
+
     # ---- changes in the course
     def add(self, position: Any, radius: Any, *, velocity: Any = 0.0, omega: Any = 0.0,
             material: Union[str, Any] = 0, density: Any = None, ids: Any = None) -> np.ndarray:
@@ -248,6 +294,16 @@ class Simulation:
     def set_gravity(self, gravity: Vector) -> None:
         """From the next step on [m/s²]. Collective; the same on every rank."""
         self._inside.set_gravity(_three(gravity))
+
+    def set_contact(self, a: str, b: str, **numbers: float) -> None:
+        """What two materials have together from the next step on: `sim.set_contact("sand", "steel", friction=0.3)`.
+
+        Collective; the same on every rank.
+
+        Args:
+            numbers: under the keys of a deck: friction, restitution, normal_stiffness and so on; others stay.
+        """
+        self._inside.set_contact(a, b, {key: float(value) for key, value in numbers.items()})
 
     # ---- back and again
     def save(self, state: Optional[_barchan.State] = None) -> _barchan.State:

@@ -46,7 +46,7 @@ World<Dim> world_of(const Domain& domain, double cutoff, double skin, std::int64
   w.grain.size = 0x1p-30;
   w.kernels = make_kernels(Dim, VectorWidth::Scalar, w.laws, has_bonds, w.grid.box());
   w.skin = skin;
-  w.dt = 1e-4;
+  w.dt = w.last_dt = 1e-4;
   w.num_particles = num_particles;
   return w;
 }
@@ -134,7 +134,7 @@ class Lanes {
   }
 
   void step() {
-    const StepFrame frame{world_->dt, {}, 0.0, step_++};
+    const StepFrame frame{world_->dt, {}, 0.0, step_++, world_->dt};
     for (auto& lane : lanes_) {
       lane->step.begin(frame);
       for (int c = 0; c < lane->brick.num_chunks(); ++c) lane->step.run_chunk(c);
