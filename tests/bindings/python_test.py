@@ -58,7 +58,7 @@ def course(barchan, comm, excursions, by_id=False):
         sim.walls["ceiling"].set_velocity([0.0, -0.5])
         sim.set_gravity([0.0, -4.0])
         sim.scatter("velocity", ids, [[0.0, -1.0], [0.0, 1.0]])
-        sim.walls["ceiling"].set_pose([0.0, 1.05], [0.02, -1.0])
+        sim.walls["ceiling"].set_pose([0.0, 1.05], [0.0, -2.0])
         sim.set_contact("sand", "sand", friction=0.1, restitution=0.9)
         sim.set_time_step(1.3e-4)
         sim.advance_to(sim.time + 0.00777)
@@ -98,10 +98,10 @@ def views(barchan):
 def links(barchan):
     """What lies on the floor presses it with the weight of all once it rests."""
     import numpy as np
-    with barchan.Simulation(DECK, set={"gravity": [0, -9.81], "particles.1.region.hi": [4, 0.1]}) as sim:
+    with barchan.Simulation(DECK, set={"gravity": [0, -9.81], "particles.1.region.hi": [4, 0.15]}) as sim:
         assert len(sim.bonds()) == 0
-        sim.advance_to(0.40003)
-        assert sim.time == 0.40003
+        sim.advance_to(0.80003)
+        assert sim.time == 0.80003
         floor, pairs = sim.wall_contacts(), sim.contacts()
         assert len(pairs) > 0 and pairs.normals.shape == (len(pairs), 3) and (pairs.first < pairs.second).all()
         assert np.allclose(np.linalg.norm(pairs.normals, axis=1), 1.0)
