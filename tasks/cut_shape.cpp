@@ -165,13 +165,14 @@ CutRoom room_of(const Grid<Dim>& grid, std::int64_t num_particles) {
   return room;
 }
 
-/// Particles lie as densely everywhere, and cuts on faces of cells.
+/// Particles lie as densely wherever they are, and cuts on faces of cells.
 double predicted_step(const CutShape& shape, const CutRoom& room) {
-  const double per_cell = static_cast<double>(room.num_particles) / room.num_cells();
+  double per_cell = static_cast<double>(room.num_particles);
+  for (std::size_t k = 0; k < 3; ++k) per_cell /= room.num_filled(k);
   double own = 1.0, with_ghosts = 1.0, beside = 1.0, beside_in_rank = 1.0;
   for (std::size_t k = 0; k < 3; ++k) {
     const int along = shape.along(static_cast<int>(k));
-    const int thick = (room.cells[k] + along - 1) / along;
+    const int thick = (room.num_filled(k) + along - 1) / along;
     const auto neighbours = [&](int n, bool is_ring) {
       return std::min(n - 1, is_ring || n > 2 ? 2 : 1);
     };

@@ -16,6 +16,7 @@ inline constexpr int kMinSlabs = 2;
 /// The grid that is cut, as its cuts see it.
 struct CutRoom {
   std::array<int, 3> cells{1, 1, 1};  ///< along the grid's axes
+  std::array<int, 3> filled{};        ///< from the first to the last with particles; 0: all
   std::array<int, 3> axes{0, 1, 2};   ///< which of x, y, z these are
   std::array<bool, 3> is_periodic{};
   int dimension = 3;
@@ -23,6 +24,9 @@ struct CutRoom {
 
   [[nodiscard]] int most_strips() const;
   [[nodiscard]] double num_cells() const;
+  [[nodiscard]] int num_filled(std::size_t axis) const {
+    return filled[axis] > 0 ? filled[axis] : cells[axis];
+  }
 };
 template <int Dim>
 [[nodiscard]] CutRoom room_of(const Grid<Dim>& grid, std::int64_t num_particles);

@@ -37,7 +37,7 @@ CutPlan plan_for(const Model& model, const ParticleSet& set) {
   const double reach =
       search_reach(model, set, model.search.skin.value_or(default_skin(model, set)));
   const auto num_particles = static_cast<std::int64_t>(set.particles.size());
-  const Grid<Dim> grid(model.domain, reach, num_particles);
+  const Grid<Dim> grid(model.domain, reach);
   CutPlan plan{room_of(grid, num_particles), {}, {}};
   for (int axis = 0; axis < Dim; ++axis)
     plan.cell[static_cast<std::size_t>(axis)] =
@@ -46,6 +46,11 @@ CutPlan plan_for(const Model& model, const ParticleSet& set) {
   for (const CellAt<Dim>& cell : cells_of(grid, set)) {
     auto& at = plan.cells.emplace_back();
     std::copy(cell.begin(), cell.end(), at.begin());
+  }
+  for (std::size_t k = 0; k < Dim && !plan.cells.empty(); ++k) {
+    const auto [lo, hi] = std::minmax_element(plan.cells.begin(), plan.cells.end(),
+                                              [k](auto& a, auto& b) { return a[k] < b[k]; });
+    plan.room.filled[k] = (*hi)[k] - (*lo)[k] + 1;
   }
   return plan;
 }

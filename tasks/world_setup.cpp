@@ -22,7 +22,7 @@ World<Dim> make_world(const Model& model, const WorldScale& scale, VectorWidth w
   world.accounts = model.output.energy;
   world.search = model.search.kind;
   world.num_particles = scale.num_particles;
-  world.grid = Grid<Dim>(model.domain, scale.reach, scale.num_particles);
+  world.grid = Grid<Dim>(model.domain, scale.reach);
   world.laws = LawTable(model.contacts);
   world.grain = scale.grain;
   world.kernels = make_kernels(Dim, width, world.laws, scale.has_bonds, world.grid.box());

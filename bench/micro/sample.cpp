@@ -124,7 +124,7 @@ std::unique_ptr<Sample<Dim>> make_sample(std::int64_t count, VectorWidth width, 
   world.skin = default_skin(deck.model, set);
   world.dt = world.last_dt = deck.model.time.step;
   world.num_particles = count;
-  world.grid = Grid<Dim>(deck.model.domain, search_reach(deck.model, set, world.skin), count);
+  world.grid = Grid<Dim>(deck.model.domain, search_reach(deck.model, set, world.skin));
   world.laws = LawTable(deck.model.contacts);
   world.grain = force_grain(deck.model, set);
   world.kernels = make_kernels(Dim, width, world.laws, false, world.grid.box());

@@ -14,9 +14,10 @@ void Brick<Dim>::place(const Placement<Dim>& at) {
     if (form == CutForm::Bricks) continue;
     const bool is_left = link.side == Side::Left;
     const int num_slabs = grid.num_slabs();
-    link.sends.lists[0] = {is_left ? box.lo[0] : box.hi[0] - 1};
-    link.takes.lists[0] = {is_left ? (box.lo[0] + num_slabs - 1) % num_slabs
-                                   : box.hi[0] % num_slabs};
+    const int sends = is_left ? box.lo[0] : box.hi[0] - 1;
+    const int takes = is_left ? (box.lo[0] + num_slabs - 1) % num_slabs : box.hi[0] % num_slabs;
+    link.sends.spans[0] = {{sends, sends}};
+    link.takes.spans[0] = {{takes, takes}};
   }
 }
 

@@ -64,6 +64,9 @@ class Rebuild {
   [[nodiscard]] bool computes_bond(std::int32_t bond) const;
   /// By cell of the box: its place among the cells, in the order of rows.
   std::vector<std::int32_t> places_of_cells();
+  std::vector<std::int32_t> places_in_box();
+  std::vector<std::int32_t> places_among_filled();
+  [[nodiscard]] bool is_rim(std::int64_t key) const;
   std::vector<std::int32_t> sources();
   void place_bands();
   void find_runs();
@@ -72,9 +75,9 @@ class Rebuild {
   Lists<Dim>& lists_;
   HistoryCarry<Dim> carry_;
   // between begin and restore_history
-  Leavers leavers_;                    ///< by source row: this brick's, then arrivals
-  std::vector<std::int32_t> new_row_;  ///< of every source row; -1: left
-  std::int32_t num_rim_cells_ = 0;
+  Leavers leavers_;                                 ///< by source row: this brick's, then arrivals
+  std::vector<std::int32_t> new_row_;               ///< of every source row; -1: left
+  std::int32_t num_cells_ = 0, num_rim_cells_ = 0;  ///< of the order
 };
 
 extern template class Rebuild<2>;

@@ -1,11 +1,13 @@
 // Rows by cells: the part of Rebuild after migration.
 #include <algorithm>
+#include <utility>
 
 #include <barchan/core/brick/rebuild.hpp>
 #include <barchan/core/particles/row_order.hpp>
 
 namespace barchan {
 
+/// Of the cells of the box: those of the rim first, then by keys.
 template <int Dim>
 std::vector<std::int32_t> Rebuild<Dim>::places_of_cells() {
   const CellBox<Dim>& box = brick_.box;
@@ -25,30 +27,84 @@ std::vector<std::int32_t> Rebuild<Dim>::places_of_cells() {
   return places;
 }
 
+/// Of every row that stays the place of its cell among all of the box.
+template <int Dim>
+std::vector<std::int32_t> Rebuild<Dim>::places_in_box() {
+  const Grid<Dim>& grid = brick_.world->grid;
+  const std::int64_t first_key = brick_.box.lo[0] * grid.slab_size();
+  const std::vector<std::int32_t> of_cell = places_of_cells();
+  std::vector<std::int32_t> places(leavers_.way.size());
+  for (std::size_t row = 0; row < places.size(); ++row) {
+    if (leavers_.way[row] != Leavers::Stays) continue;
+    const std::int64_t key = brick_.store.key[row];
+    places[row] = brick_.form == CutForm::Strips
+                      ? static_cast<std::int32_t>(key - first_key)
+                      : of_cell[brick_.box.place(cell_of_key(grid, key))];
+  }
+  num_cells_ = static_cast<std::int32_t>(of_cell.size());
+  return places;
+}
+
+/// The same among the cells that have rows: of a box that is mostly empty.
+template <int Dim>
+std::vector<std::int32_t> Rebuild<Dim>::places_among_filled() {
+  constexpr std::int64_t kInside = std::int64_t{1} << 62;  // beyond all keys
+  const std::size_t num_rows = leavers_.way.size();
+  std::vector<std::int64_t> rank(num_rows, 0), cells;
+  std::int64_t last = -1, of_last = 0;
+  for (std::size_t row = 0; row < num_rows; ++row) {
+    if (leavers_.way[row] != Leavers::Stays) continue;
+    if (const std::int64_t key = brick_.store.key[row]; key != last) {
+      of_last = key + (is_rim(key) ? 0 : kInside);
+      cells.push_back(of_last);
+      last = key;
+    }
+    rank[row] = of_last;
+  }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  const auto place_of = [&](std::int64_t its) {
+    return static_cast<std::int32_t>(std::lower_bound(cells.begin(), cells.end(), its) -
+                                     cells.begin());
+  };
+  std::vector<std::int32_t> places(num_rows);
+  std::int32_t place = 0;
+  last = -1;
+  for (std::size_t row = 0; row < num_rows; ++row) {
+    if (leavers_.way[row] != Leavers::Stays) continue;
+    if (rank[row] != last) place = place_of(last = rank[row]);
+    places[row] = place;
+  }
+  num_cells_ = static_cast<std::int32_t>(cells.size());
+  num_rim_cells_ = place_of(kInside);
+  return places;
+}
+
+template <int Dim>
+bool Rebuild<Dim>::is_rim(std::int64_t key) const {
+  if (brick_.form == CutForm::Strips) return false;
+  const CellAt<Dim> at = cell_of_key(brick_.world->grid, key);
+  const auto is_sent = [&](const BrickLink<Dim>& link) { return link.sends.contains(at); };
+  return std::any_of(brick_.links.begin(), brick_.links.end(), is_sent);
+}
+
 /// Counting sort by cell; within a cell any order will do. @return of every row where it comes
 /// from, then those that have left
 template <int Dim>
 std::vector<std::int32_t> Rebuild<Dim>::sources() {
   const std::vector<std::int8_t>& way = leavers_.way;
-  const std::vector<std::int32_t> places = places_of_cells();
-  const Grid<Dim>& grid = brick_.world->grid;
-  const std::int64_t first_key = brick_.box.lo[0] * grid.slab_size();
-  const auto place_of_row = [&](std::size_t row) {
-    const std::int64_t key = brick_.store.key[row];
-    if (brick_.form == CutForm::Strips) return static_cast<std::int32_t>(key - first_key);
-    return places[brick_.box.place(cell_of_key(grid, key))];
-  };
-  std::vector<std::int32_t> next(places.size() + 1, 0), cell(way.size());
-  std::int32_t stays = 0;
+  const auto stays = static_cast<std::size_t>(
+      std::count(way.begin(), way.end(), static_cast<std::int8_t>(Leavers::Stays)));
+  const std::vector<std::int32_t> cell =
+      is_mostly_empty(brick_.box.size(), static_cast<std::int64_t>(stays)) ? places_among_filled()
+                                                                           : places_in_box();
+  std::vector<std::int32_t> next(static_cast<std::size_t>(num_cells_) + 1, 0);
   for (std::size_t row = 0; row < way.size(); ++row) {
-    if (way[row] != Leavers::Stays) continue;
-    cell[row] = place_of_row(row);
-    ++next[static_cast<std::size_t>(cell[row]) + 1];
-    ++stays;
+    if (way[row] == Leavers::Stays) ++next[static_cast<std::size_t>(cell[row]) + 1];
   }
   for (std::size_t c = 0; c + 1 < next.size(); ++c) next[c + 1] += next[c];
   brick_.num_rim = next[static_cast<std::size_t>(num_rim_cells_)];
-  std::vector<std::int32_t> source(static_cast<std::size_t>(stays));
+  std::vector<std::int32_t> source(stays);
   source.reserve(way.size());
   new_row_.assign(way.size(), -1);
   for (std::size_t row = 0; row < way.size(); ++row) {
@@ -59,7 +115,7 @@ std::vector<std::int32_t> Rebuild<Dim>::sources() {
   for (std::size_t row = 0; row < way.size(); ++row) {
     if (way[row] != Leavers::Stays) source.push_back(static_cast<std::int32_t>(row));
   }
-  brick_.store.num_owned = stays;
+  brick_.store.num_owned = static_cast<std::int32_t>(stays);
   return source;
 }
 
@@ -85,12 +141,14 @@ void Rebuild<Dim>::place_bands() {
   brick_.interior = {left.rows.end, std::max(left.rows.end, right.rows.begin)};
 }
 
+/// By ascending keys. Where a link sends more cells than there are rows, it goes by rows.
 template <int Dim>
 void Rebuild<Dim>::find_runs() {
+  const Rows all{0, brick_.form == CutForm::Strips ? brick_.store.num_owned : brick_.num_rim};
   for (BrickLink<Dim>& link : brick_.links) {
     link.runs.clear();
     link.num_sent = 0;
-    link.sends.for_each([&](const CellAt<Dim>& at) {
+    const auto add = [&](const CellAt<Dim>& at) {
       const Rows rows = brick_.cells.rows(at);
       if (rows.begin == rows.end) return;
       link.num_sent += rows.end - rows.begin;
@@ -98,7 +156,18 @@ void Rebuild<Dim>::find_runs() {
         link.runs.back().end = rows.end;
       else
         link.runs.push_back(rows);
-    });
+    };
+    if (link.sends.size() <= all.size()) {
+      link.sends.for_each(add);
+      continue;
+    }
+    std::int64_t last = -1;
+    for (std::int32_t row = all.begin; row < all.end; ++row) {
+      const std::int64_t key = brick_.store.key[static_cast<std::size_t>(row)];
+      if (std::exchange(last, key) == key) continue;
+      const CellAt<Dim> at = cell_of_key(brick_.world->grid, key);
+      if (link.sends.contains(at)) add(at);
+    }
   }
 }
 
@@ -114,7 +183,7 @@ void Rebuild<Dim>::order() {
   if (!store.external.empty()) store.external.resize(stays * kForce);
   store.num_ghosts = {};
   store.resize_for_ghosts(world.grain.rounder());
-  brick_.cells.cover(world.grid, brick_.box);
+  brick_.cells.cover(world.grid, brick_.box, store.num_owned);
   brick_.cells.add(world.grid, store, {0, store.num_owned});
   place_bands();
   find_runs();

@@ -8,13 +8,16 @@ CellRegion<Dim> cells_beside(const Grid<Dim>& grid, const CellBox<Dim>& box,
   CellRegion<Dim> region;
   for (int axis = 0; axis < Dim; ++axis) {
     const auto k = static_cast<std::size_t>(axis);
-    const int n = grid.cells(axis);
-    const auto touches = [&](int c) {
-      const auto is_near = [&](int at) { return at >= other.lo[k] - 1 && at <= other.hi[k]; };
-      return is_near(c) || (grid.is_periodic(axis) && (is_near(c - n) || is_near(c + n)));
-    };
-    for (int c = box.lo[k]; c < box.hi[k]; ++c) {
-      if (touches(c)) region.lists[k].push_back(c);
+    const int n = grid.is_periodic(axis) ? grid.cells(axis) : 0;
+    auto& spans = region.spans[k];
+    for (const int around : {-n, 0, n}) {  // images of the other box, ascending
+      const CellSpan span{std::max(box.lo[k], other.lo[k] - 1 + around),
+                          std::min(box.hi[k] - 1, other.hi[k] + around)};
+      if (span.first > span.last) continue;
+      if (!spans.empty() && span.first <= spans.back().last + 1)
+        spans.back().last = std::max(spans.back().last, span.last);
+      else
+        spans.push_back(span);
     }
   }
   return region;

@@ -70,16 +70,31 @@ struct Placement {
   std::vector<CellBox<Dim>> beyond;  ///< by link
 };
 
-/// The cells whose coordinates are listed axis by axis, ascending.
+/// Coordinates first, …, last.
+struct CellSpan {
+  int first = 0, last = -1;
+};
+
+/// The cells whose coordinates lie, axis by axis, in one of some spans, apart and ascending.
 template <int Dim>
 struct CellRegion {
-  std::array<std::vector<int>, Dim> lists;
+  std::array<std::vector<CellSpan>, Dim> spans;
 
   [[nodiscard]] bool contains(const CellAt<Dim>& at) const {
     for (std::size_t k = 0; k < Dim; ++k) {
-      if (!std::binary_search(lists[k].begin(), lists[k].end(), at[k])) return false;
+      const auto has = [&](const CellSpan& s) { return at[k] >= s.first && at[k] <= s.last; };
+      if (std::none_of(spans[k].begin(), spans[k].end(), has)) return false;
     }
     return true;
+  }
+  [[nodiscard]] std::int64_t size() const {
+    std::int64_t n = 1;
+    for (const auto& along : spans) {
+      std::int64_t length = 0;
+      for (const CellSpan& s : along) length += s.last - s.first + 1;
+      n *= length;
+    }
+    return n;
   }
   /// Calls f(cell) for each, by ascending keys.
   template <class F>
@@ -91,12 +106,14 @@ struct CellRegion {
  private:
   template <class F>
   void visit(std::size_t k, CellAt<Dim>& at, F& f) const {
-    for (const int c : lists[k]) {
-      at[k] = c;
-      if (k + 1 == Dim)
-        f(at);
-      else
-        visit(k + 1, at, f);
+    for (const CellSpan& span : spans[k]) {
+      for (int c = span.first; c <= span.last; ++c) {
+        at[k] = c;
+        if (k + 1 == Dim)
+          f(at);
+        else
+          visit(k + 1, at, f);
+      }
     }
   }
 };

@@ -12,8 +12,8 @@ constexpr int kFewestWithoutImages = 4;
 }  // namespace
 
 template <int Dim>
-void CellIndex<Dim>::cover(const Grid<Dim>& grid, const CellBox<Dim>& box) {
-  std::size_t num_cells = 1;
+void CellIndex<Dim>::cover(const Grid<Dim>& grid, const CellBox<Dim>& box, std::int64_t num_rows) {
+  std::int64_t num_cells = 1;
   for (int axis = 0; axis < Dim; ++axis) {
     const auto k = static_cast<std::size_t>(axis);
     Axis& a = axes_[k];
@@ -25,9 +25,9 @@ void CellIndex<Dim>::cover(const Grid<Dim>& grid, const CellBox<Dim>& box) {
     a.wraps = a.is_ring && end - first >= a.cells;
     a.length = std::min(end - first, a.cells);
     a.first = a.wraps ? 0 : (first + a.cells) % a.cells;
-    num_cells *= static_cast<std::size_t>(a.length);
+    num_cells *= a.length;
   }
-  rows_.assign(num_cells, Rows{0, 0});
+  rows_.begin(num_cells, num_rows);
 }
 
 template <int Dim>
@@ -37,7 +37,7 @@ void CellIndex<Dim>::add(const Grid<Dim>& grid, const ParticleStore<Dim>& store,
   for (std::int32_t row = rows.begin; row < rows.end; ++row) {
     const std::int64_t key = store.key[static_cast<std::size_t>(row)];
     if (key != last_key) {
-      cell = &rows_[static_cast<std::size_t>(place(cell_of_key(grid, key)))];
+      cell = &rows_.make(place(cell_of_key(grid, key)));
       *cell = {row, row};
       last_key = key;
     }
@@ -72,9 +72,7 @@ void Neighbourhood<Dim>::collect(const CellIndex<Dim>& index, const CellAt<Dim>&
   const auto add_line = [&](std::int64_t line) {
     line *= index.axes_[Dim - 1].length;
     for (int z = 0; z < around[Dim - 1].count; ++z)
-      add(index.rows_[static_cast<std::size_t>(line +
-                                               around[Dim - 1].local[static_cast<std::size_t>(z)])],
-          wanted);
+      add(index.rows_.of(line + around[Dim - 1].local[static_cast<std::size_t>(z)]), wanted);
   };
   for (int x = 0; x < around[0].count; ++x) {
     const std::int64_t slab = around[0].local[static_cast<std::size_t>(x)];

@@ -2,11 +2,11 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include <barchan/core/base/rows.hpp>
 #include <barchan/core/particles/particle_store.hpp>
 #include <barchan/core/search/cell_box.hpp>
+#include <barchan/core/search/cell_rows.hpp>
 
 namespace barchan {
 
@@ -18,15 +18,14 @@ template <int Dim>
 class CellIndex {
  public:
   /// No rows yet.
-  void cover(const Grid<Dim>& grid, const CellBox<Dim>& box);
+  /// @param num_rows  of the box itself
+  void cover(const Grid<Dim>& grid, const CellBox<Dim>& box, std::int64_t num_rows);
   /// @pre the rows of a cell stand together, and lie in what is covered
   void add(const Grid<Dim>& grid, const ParticleStore<Dim>& store, Rows rows);
 
   /// Of a cell that is covered.
-  [[nodiscard]] Rows rows(const CellAt<Dim>& at) const {
-    return rows_[static_cast<std::size_t>(place(at))];
-  }
-  [[nodiscard]] std::size_t bytes() const { return rows_.capacity() * sizeof(Rows); }
+  [[nodiscard]] Rows rows(const CellAt<Dim>& at) const { return rows_.of(place(at)); }
+  [[nodiscard]] std::size_t bytes() const { return rows_.bytes(); }
 
  private:
   template <int>
@@ -47,7 +46,7 @@ class CellIndex {
   }
 
   std::array<Axis, Dim> axes_{};
-  std::vector<Rows> rows_;
+  CellRows rows_;
 };
 
 /// The rows of the cells around one cell, its own among them, as ascending ranges.

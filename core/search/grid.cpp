@@ -5,6 +5,12 @@
 #include <barchan/core/base/error.hpp>
 
 namespace barchan {
+namespace {
+
+/// Along one axis: a recut adds up particles by each axis' cells, over all ranks.
+constexpr double kMostCells = 1e5;
+
+}  // namespace
 
 PeriodicBox periodic_box(const Domain& domain, int dimension) {
   PeriodicBox box;
@@ -17,13 +23,12 @@ PeriodicBox periodic_box(const Domain& domain, int dimension) {
 }
 
 template <int Dim>
-Grid<Dim>::Grid(const Domain& domain, double cutoff, std::int64_t num_particles) {
+Grid<Dim>::Grid(const Domain& domain, double cutoff) {
   axis_[0] = domain.strip_axis;
   for (int a = 0, k = 1; a < Dim; ++a) {
     if (a != domain.strip_axis) axis_[static_cast<std::size_t>(k++)] = a;
   }
   box_ = periodic_box(domain, Dim);
-  double total = 1.0;
   for (int k = 0; k < Dim; ++k) {
     const int a = axis(k);
     const double length = domain.hi[a] - domain.lo[a];
@@ -31,8 +36,7 @@ Grid<Dim>::Grid(const Domain& domain, double cutoff, std::int64_t num_particles)
     origin_[a] = lo_[static_cast<std::size_t>(k)] = domain.lo[a];
     periodic_[static_cast<std::size_t>(k)] = domain.periodic[static_cast<std::size_t>(a)];
     cells_[static_cast<std::size_t>(k)] =
-        static_cast<int>(std::clamp(std::floor(length / cutoff), 1.0, 1e6));
-    total *= cells(k);
+        static_cast<int>(std::clamp(std::floor(length / cutoff), 1.0, kMostCells));
     if (!is_periodic(k)) continue;
     if (length < 2.0 * cutoff) {
       throw InputError(
@@ -42,13 +46,6 @@ Grid<Dim>::Grid(const Domain& domain, double cutoff, std::int64_t num_particles)
                       length, "xyz"[a]),
           fmt::format("make it at least {:.6g} m", 2.0 * cutoff));
     }
-  }
-  const double most = 8.0 * static_cast<double>(num_particles) + 4096.0;
-  while (total > most) {  // an almost empty domain: larger cells
-    auto widest = std::max_element(cells_.begin(), cells_.end());
-    total /= *widest;
-    *widest = (*widest + 1) / 2;
-    total *= *widest;
   }
   for (int k = 0; k < Dim; ++k) {
     inverse_[static_cast<std::size_t>(k)] = cells(k) / (domain.hi[axis(k)] - domain.lo[axis(k)]);

@@ -37,10 +37,9 @@ class Grid {
  public:
   Grid() = default;
 
-  /// @param cutoff         reach of the candidate search [m]
-  /// @param num_particles  in all; bounds the number of cells, so that a large domain that is
-  ///                       mostly empty costs no memory
-  Grid(const Domain& domain, double cutoff, std::int64_t num_particles);
+  /// @param cutoff  reach of the candidate search [m]
+  /// Cells cost nothing by themselves: indices keep those where particles are.
+  Grid(const Domain& domain, double cutoff);
 
   [[nodiscard]] int num_slabs() const { return cells_[0]; }
   [[nodiscard]] std::int64_t slab_size() const { return slab_size_; }  ///< cells per slab

@@ -98,6 +98,13 @@ inline Scenario gas(int dimension, std::array<bool, 3> periodic, double speed,
   return s;
 }
 
+/// Of millions of cells all but a few hundred are empty.
+inline Scenario gas_in_a_corner() {
+  Scenario s = gas(3, {true, false, false}, 6.0, "gas in a corner of a vast domain");
+  s.model.domain.hi += Vec3(0.0, 40.0, 40.0);
+  return s;
+}
+
 inline Scenario shear_flow() {
   Scenario s = gas(2, {true, false, false}, 0.5, "dense shear, periodic along the strips");
   s.set = {};

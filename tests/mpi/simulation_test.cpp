@@ -197,6 +197,10 @@ TEST(SameBits, GasPeriodicBothWaysWithStripsAlongY) {
   (void)expect_same_bits(strips_along_y(), 5);
 }
 
+TEST(SameBits, GasInACornerOfAVastDomain) {
+  (void)expect_same_bits(gas_in_a_corner(), 9);
+}
+
 TEST(SameBits, GasIn3DPeriodicAllAround) {
   (void)expect_same_bits(gas(3, {true, true, true}, 6.0, "3D gas, periodic"), 6);
 }

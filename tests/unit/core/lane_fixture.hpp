@@ -41,7 +41,7 @@ template <int Dim>
 World<Dim> world_of(const Domain& domain, double cutoff, double skin, std::int64_t num_particles,
                     bool has_bonds = false) {
   World<Dim> w;
-  w.grid = Grid<Dim>(domain, cutoff, num_particles);
+  w.grid = Grid<Dim>(domain, cutoff);
   w.laws = LawTable(table_of(2));
   w.grain.size = 0x1p-30;
   w.kernels = make_kernels(Dim, VectorWidth::Scalar, w.laws, has_bonds, w.grid.box());

@@ -124,7 +124,9 @@ TEST(LaneMessages, RefuseGhostsOutOfOrderOrOfOtherCells) {
   const auto decode = [&](const std::vector<RowRecord<2>>& ghosts, int of_slab) {
     std::vector<std::byte> message;
     ByteWriter(message).put_counted(ghosts);
-    return decode_ghosts(message, world, CellRegion<2>{{{{of_slab}, {at[1], at[1] + 1}}}}).size();
+    return decode_ghosts(message, world,
+                         CellRegion<2>{{{{{of_slab, of_slab}}, {{at[1], at[1] + 1}}}}})
+        .size();
   };
 
   EXPECT_EQ(decode({first, second}, at[0]), 2U);

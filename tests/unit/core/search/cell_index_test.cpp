@@ -29,11 +29,11 @@ ParticleStore<Dim> keyed_store(const Grid<Dim>& grid, const Domain& domain, int 
 TEST(CellIndex, TellsTheRowsOfEveryCell) {
   Domain domain;
   domain.hi = Vec3(5.5, 4.5, 0.0);
-  const Grid<2> grid(domain, 1.0, 60);
+  const Grid<2> grid(domain, 1.0);
   const auto store = keyed_store(grid, domain, 60);
   CellIndex<2> cells;
 
-  cells.cover(grid, box_of_slabs(grid, 0, grid.num_slabs()));
+  cells.cover(grid, box_of_slabs(grid, 0, grid.num_slabs()), 60);
   cells.add(grid, store, {0, 60});
 
   for (std::int64_t key = 0; key < grid.num_slabs() * grid.slab_size(); ++key) {
@@ -42,6 +42,36 @@ TEST(CellIndex, TellsTheRowsOfEveryCell) {
     for (std::int32_t i = rows.begin; i < rows.end; ++i)
       EXPECT_EQ(store.key[static_cast<std::size_t>(i)], key);
   }
+}
+
+TEST(CellIndex, KeepsTheFilledCellsOfAMostlyEmptyBox) {
+  Domain domain;
+  domain.hi = Vec3(3000.0, 2000.0, 1000.0);
+  const Grid<3> grid(domain, 1.0);
+  Domain filled;
+  filled.hi = Vec3(40.0, 30.0, 20.0);
+  const auto store = keyed_store(grid, filled, 2000);
+  CellIndex<3> cells;
+
+  cells.cover(grid, box_of_slabs(grid, 0, grid.num_slabs()), 100);  // the rest like ghosts
+  cells.add(grid, store, {0, 700});
+  cells.add(grid, store, {700, 2000});
+
+  EXPECT_LT(cells.bytes(), 2000 * 200);
+  CellAt<3> at{};
+  std::int64_t found = 0;
+  for (at[0] = 0; at[0] < 45; ++at[0]) {
+    for (at[1] = 0; at[1] < 35; ++at[1]) {
+      for (at[2] = 0; at[2] < 25; ++at[2]) {
+        const Rows rows = cells.rows(at);
+        found += rows.size();
+        const auto key = grid.key(at);
+        for (std::int32_t i = rows.begin; i < rows.end; ++i)
+          EXPECT_EQ(store.key[static_cast<std::size_t>(i)], key);
+      }
+    }
+  }
+  EXPECT_EQ(found, 2000);
 }
 
 /// Keys of the 3^Dim cells around a cell, from coordinates.
@@ -69,10 +99,10 @@ std::set<std::int64_t> cells_around(const Grid<Dim>& grid, std::int64_t key) {
 
 template <int Dim>
 void expect_neighbourhoods(const Domain& domain) {
-  const Grid<Dim> grid(domain, 1.0, 300);
+  const Grid<Dim> grid(domain, 1.0);
   const auto store = keyed_store(grid, domain, 300);
   CellIndex<Dim> cells;
-  cells.cover(grid, box_of_slabs(grid, 0, grid.num_slabs()));
+  cells.cover(grid, box_of_slabs(grid, 0, grid.num_slabs()), 300);
   cells.add(grid, store, {0, 300});
   Neighbourhood<Dim> around;
   for (std::int64_t key = 0; key < grid.num_slabs() * grid.slab_size(); ++key) {
