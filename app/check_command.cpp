@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <map>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include <barchan/app/warning.hpp>
 #include <barchan/core/generators/check_walls.hpp>
 #include <barchan/core/kernels/force_grain.hpp>
+#include <barchan/core/kernels/heat_table.hpp>
 #include <barchan/core/model/mass.hpp>
 #include <barchan/tasks/forecast.hpp>
 #include <barchan/tasks/memory_estimate.hpp>
@@ -75,6 +77,24 @@ void print_grain(const Model& model, const ParticleSet& particles) {
   if (!warning.empty()) std::printf("  Warning: %s.\n", warning.c_str());
 }
 
+void print_heat(const Model& model, const ParticleSet& particles) {
+  if (!model.heat.is_on) return;
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const ParticleData& p : particles.particles)
+    low = std::min(low, p.temperature), high = std::max(high, p.temperature);
+  Rows rows{{"material", "conductivity [W/(m·K)]", "heat capacity [J/(kg·K)]"}};
+  const auto text = [](double value) { return value > 0.0 ? fmt::format("{:.4g}", value) : "–"; };
+  for (const Material& m : model.materials)
+    rows.push_back({m.name, text(m.conductivity), text(m.heat_capacity)});
+  std::printf("Heat: conduction through contacts, %s K at the start\n%s",
+              low == high ? fmt::format("{:g}", low).c_str()
+                          : fmt::format("{:g} … {:g}", low, high).c_str(),
+              table(rows).c_str());
+  const ForceGrain grain = heat_grain(model, particles);
+  std::printf("  Flows are rounded to %.3g W; sums are exact up to %.3g W.\n", grain.size,
+              grain.most());
+}
+
 void print_walls(const Model& model) {
   if (model.walls.empty()) return;
   Rows rows;
@@ -85,6 +105,8 @@ void print_walls(const Model& model) {
                           model.dimension == 2 ? "N/m" : "N/m²", wall.mass);
     else if (!wall.velocity.isZero())
       what += fmt::format(", moves at {:.4g} m/s", wall.velocity.norm());
+    if (wall.temperature) what += fmt::format(", at {:g} K", *wall.temperature);
+    if (wall.heat_flux) what += fmt::format(", gives {:g} W/m²", *wall.heat_flux);
     if (wall.from_stage > 0)
       what += ", from stage " + model.stages[static_cast<std::size_t>(wall.from_stage)].name;
     rows.push_back(
@@ -235,6 +257,7 @@ void check_deck(const CheckArguments& arguments) {
   print_particles(loaded);
   print_contacts(loaded);
   print_grain(model, loaded.particles);
+  print_heat(model, loaded.particles);
   print_walls(model);
   print_warnings(walls_to_come_in_particles(model, loaded.particles));
   print_stages(model);

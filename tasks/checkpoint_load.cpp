@@ -21,8 +21,8 @@ namespace barchan {
 namespace {
 
 ShareLimits limits_of(const Model& model) {
-  return {model.dimension, model.materials.size(), model.walls.size(), model.bond_laws.size(),
-          model.contacts.law};
+  return {model.dimension,        model.materials.size(), model.walls.size(),
+          model.bond_laws.size(), model.contacts.law,     model.heat.is_on};
 }
 
 template <class T>

@@ -96,6 +96,7 @@ void save_parts(const RunParts<Dim>& run, CheckpointState& state) {
   state.start_particles = run.scale.num_particles;
   state.has_bonds = run.scale.has_bonds;
   state.grain = run.scale.grain.size;
+  state.heat_grain = run.scale.heat_grain.size;
   state.overlap_limit = run.model.limits.overlap_error;
   for (const WallState& wall : run.world.walls) state.walls.push_back(saved(wall));
   state.fingerprint = fingerprint(run.model);
@@ -103,8 +104,12 @@ void save_parts(const RunParts<Dim>& run, CheckpointState& state) {
 
 WorldScale scale_of(const CheckpointState& s, const Model& model) {
   const double skin = model.search.skin.value_or(s.skin);
-  return {skin, s.reach - s.skin + skin, s.start_particles, s.has_bonds,
-          grain_for_limit({s.grain}, s.overlap_limit, model.limits.overlap_error)};
+  return {skin,
+          s.reach - s.skin + skin,
+          s.start_particles,
+          s.has_bonds,
+          grain_for_limit({s.grain}, s.overlap_limit, model.limits.overlap_error),
+          grain_for_limit({s.heat_grain}, s.overlap_limit, model.limits.overlap_error)};
 }
 
 template <int Dim>

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <barchan/core/base/error.hpp>
+#include <barchan/core/kernels/heat_table.hpp>
 #include <barchan/core/model/relative_speed.hpp>
 #include <barchan/tasks/step_limits.hpp>
 
@@ -160,6 +161,9 @@ std::vector<StepLimit> step_limits(const Model& model, const ParticleSet& partic
   add_contacts(model, lightest, speed, limits);
   add_bonds(model, particles, limits);
   add_plates(model, particles, lightest, speed, limits);
+  for (const HeatLimit& heat : heat_limits(model, particles))
+    limits.add("heat in " + model.materials[static_cast<std::size_t>(heat.material)].name,
+               heat.step);
   return limits.sorted();
 }
 

@@ -31,6 +31,7 @@ struct StepLimit {
 ///   and for a long chain; stretching, shearing (with rotation) and bending separately.
 /// - "plate": a loaded plate and what touches it: as many particles of a material as fit side by
 ///   side on both of its faces, each moving against the plate.
+/// - "heat": what particles of a material conduct, see heat_limits().
 /// @param particles  fixed ones count as infinitely heavy
 /// Pure. Same on every rank.
 std::vector<StepLimit> step_limits(const Model& model, const ParticleSet& particles);

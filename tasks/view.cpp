@@ -19,10 +19,15 @@ OwnedParticle particle(const ParticleStore<Dim>& store, std::int32_t i) {
 }
 
 /// Sums and largest values over all ranks, exact whatever their order. Collective.
-void reduce(const Communicator& communicator, bool accounts, Measures& m,
+template <int Dim>
+void reduce(const Communicator& communicator, const World<Dim>& world, Measures& m,
             std::vector<WallSums>& walls) {
   std::vector<ExactSum*> sums{&m.kinetic, &m.elastic, &m.gravitational, &m.bonds_elastic};
-  if (accounts) {
+  if (world.heat.is_on) {
+    sums.insert(sums.end(), {&m.heat, &m.heat_capacity});
+    for (WallSums& w : walls) sums.push_back(&w.heat_flow);
+  }
+  if (world.accounts) {
     for (ExactSum& work : m.works.sums) sums.push_back(&work);
   }
   for (ExactSum& p : m.momentum) sums.push_back(&p);
@@ -45,8 +50,11 @@ void reduce(const Communicator& communicator, bool accounts, Measures& m,
                              &m.max_inverse_mass};
   std::vector<double> maxima;
   for (const double* value : largest) maxima.push_back(*value);
+  maxima.insert(maxima.end(), {m.max_temperature, -m.min_temperature});
   communicator.allreduce_max(std::span<double>(maxima));
-  for (std::size_t k = 0; k < maxima.size(); ++k) *largest[k] = maxima[k];
+  for (std::size_t k = 0; k < std::size(largest); ++k) *largest[k] = maxima[k];
+  m.max_temperature = maxima[std::size(largest)];
+  m.min_temperature = -maxima.back();
 }
 
 /// Lanes work side by side: a step's search is averaged over them, a rebuild's counts once.
@@ -117,7 +125,7 @@ Measures measure(RunParts<Dim>& run) {
     const auto sums = measure_walls(lane.brick);
     for (std::size_t w = 0; w < sums.size(); ++w) walls[w].add(sums[w]);
   }
-  reduce(run.communicator, run.world.accounts, all, walls);
+  reduce(run.communicator, run.world, all, walls);
   for (std::size_t w = 0; w < walls.size(); ++w) {
     WallState& wall = run.world.walls[w];
     for (int c = 0; c < 3; ++c) {
@@ -125,6 +133,7 @@ Measures measure(RunParts<Dim>& run) {
       wall.torque[c] = walls[w].torque[c].value();
     }
     wall.work = walls[w].work.value();
+    wall.heat_flow = walls[w].heat_flow.value();
   }
   return all;
 }

@@ -8,9 +8,12 @@ namespace barchan {
 
 WorldScale scale_of(const Model& model, const ParticleSet& particles) {
   const double skin = model.search.skin.value_or(default_skin(model, particles));
-  return {skin, search_reach(model, particles, skin),
-          static_cast<std::int64_t>(particles.particles.size()), !particles.bonds.empty(),
-          force_grain(model, particles)};
+  return {skin,
+          search_reach(model, particles, skin),
+          static_cast<std::int64_t>(particles.particles.size()),
+          !particles.bonds.empty(),
+          force_grain(model, particles),
+          heat_grain(model, particles)};
 }
 
 template <int Dim>
@@ -25,6 +28,7 @@ World<Dim> make_world(const Model& model, const WorldScale& scale, VectorWidth w
   world.grid = Grid<Dim>(model.domain, scale.reach);
   world.laws = LawTable(model.contacts);
   world.grain = scale.grain;
+  world.heat = HeatTable(model, scale.heat_grain);
   world.kernels = make_kernels(Dim, width, world.laws, scale.has_bonds, world.grid.box());
   world.bond_laws = model.bond_laws;
   world.set_walls(model.walls);

@@ -13,7 +13,7 @@ struct WorldScale {
   double skin = 0.0, reach = 0.0;  ///< [m]
   std::int64_t num_particles = 0;
   bool has_bonds = false;
-  ForceGrain grain;
+  ForceGrain grain, heat_grain;
 };
 
 /// Of the start of a run. Pure.

@@ -16,7 +16,7 @@ namespace barchan {
 namespace {
 
 /// What goes wrong in a step, in the order in which it is told.
-enum Kind : std::int64_t { Passed, Fast, Overloaded };
+enum Kind : std::int64_t { Passed, Fast, Overloaded, Hot };
 
 /// Every rank that sees the two says the same.
 template <int Dim>
@@ -86,6 +86,17 @@ template <int Dim>
           step, force, grain.most()));
 }
 
+[[noreturn]] void report_heat(const ForceGrain& grain, double flow, std::int64_t step) {
+  throw StepError(
+      {step, Hot, -std::bit_cast<std::int64_t>(flow), 0},
+      fmt::format(
+          "in step {} {:.4g} W flow through the contacts of one particle; sums of flows are "
+          "exact up to {:.4g} W, which follows from limits.overlap_error, the temperatures "
+          "of the start and of walls, and heat_flux until time.end; a larger "
+          "limits.overlap_error or a later time.end would help",
+          step, flow, grain.most()));
+}
+
 template <int Dim>
 std::int64_t first_fast_id(const Lane<Dim>& lane) {
   return lane.brick.store.id[static_cast<std::size_t>(first_fast_row(lane.brick))];
@@ -107,19 +118,21 @@ template <int Dim>
 void report_wrong_step(const RunParts<Dim>& run, const StepGraph<Dim>& graph, int nth,
                        std::int64_t step) {
   const Lane<Dim>* fast = nullptr;
-  double force = 0.0;
+  double force = 0.0, flow = 0.0;
   Passage passage;
   for (int l = 0; l < run.strip.num_lanes(); ++l) {
     const Lane<Dim>& lane = run.strip.lane(l);
     if (!must_stop(lane.brick) || graph.steps_done(l) != nth) continue;
     force = std::max(force, overload(lane.brick));
+    flow = std::max(flow, heat_overload(lane.brick));
     passage.add(lane.brick.passage);
     if (lane.brick.is_fast && (fast == nullptr || first_fast_id(lane) < first_fast_id(*fast)))
       fast = &lane;
   }
   if (passage.exists()) report_passage(run, passage, step);
   if (fast != nullptr) report_fast(run, *fast, step);
-  report_overload(run.world.grain, force, step);
+  if (force > 0.0) report_overload(run.world.grain, force, step);
+  report_heat(run.world.heat.grain, flow, step);
 }
 
 template int wrong_step(const Strip<2>&, const StepGraph<2>&);

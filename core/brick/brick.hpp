@@ -93,8 +93,9 @@ struct Brick {
   bool has_quick = false;    ///< an owned row moved farther than World::quick_travel
   /// Two that passed each other in the step before the last one; of several the first.
   Passage passage;
+  double top_flow = 0.0;  ///< largest sum of the sizes of a row's heat flows [W]
 
-  explicit Brick(World<Dim>& of) : world(&of) {}
+  explicit Brick(World<Dim>& of) : world(&of) { store.has_heat = of.heat.is_on; }
   Band& band(Side side) { return bands[index_of(side)]; }
   [[nodiscard]] const Band& band(Side side) const { return bands[index_of(side)]; }
   /// Ties it to one more brick, the left ones first. Before the brick owns anything.

@@ -15,7 +15,7 @@ template <int Dim>
 void save_particles(const ParticleStore<Dim>& store, CheckpointShare& share) {
   const std::int32_t n = store.num_owned;
   for_each_field<Dim>([&]<class T>(const Field<Dim, T>& field) {
-    if (field.array.is_optional && (store.*field.array.values).empty()) return;
+    if (!field.array.is_in(store)) return;
     std::vector<T>& column = share.*field.saved;
     const auto width = static_cast<std::size_t>(field.width);
     column.resize(static_cast<std::size_t>(n) * width);
@@ -32,6 +32,7 @@ void restore_particles(const CheckpointShare& share, ParticleStore<Dim>& store) 
   for_each_field<Dim>([&]<class T>(const Field<Dim, T>& field) {
     const std::vector<T>& column = share.*field.saved;
     auto& values = store.*field.array.values;
+    if (field.array.is_of_heat && !store.has_heat) return;
     if (field.array.is_optional) {
       if (column.empty()) return;
       values.assign(static_cast<std::size_t>(n) * static_cast<std::size_t>(field.array.width), T{});

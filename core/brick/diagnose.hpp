@@ -23,10 +23,17 @@ template <int Dim>
 [[nodiscard]] double overload(const Brick<Dim>& brick) {
   return brick.speeds.top_force > brick.world->grain.most() ? brick.speeds.top_force : 0.0;
 }
-/// The last step went wrong: a particle is fast, two passed each other, or forces are too large.
+/// The same of heat flows [W].
+template <int Dim>
+[[nodiscard]] double heat_overload(const Brick<Dim>& brick) {
+  return brick.top_flow > brick.world->heat.grain.most() ? brick.top_flow : 0.0;
+}
+/// The last step went wrong: a particle is fast, two passed each other, or forces or heat flows are
+/// too large.
 template <int Dim>
 [[nodiscard]] bool must_stop(const Brick<Dim>& brick) {
-  return brick.is_fast || brick.passage.exists() || overload(brick) > 0.0;
+  return brick.is_fast || brick.passage.exists() || overload(brick) > 0.0 ||
+         heat_overload(brick) > 0.0;
 }
 
 /// Of those that are fast the one with the lowest id. @pre brick.is_fast

@@ -15,7 +15,7 @@ namespace {
 template <int Dim, class Store, class F>
 void for_each_halo_field(Store& store, std::int32_t row, F&& f) {
   for_each_field<Dim>([&]<class T>(const Field<Dim, T>& field) {
-    if (field.is_in_halo)
+    if (field.is_in_halo && field.array.is_in(store))
       f(field.of(store, row), static_cast<std::size_t>(field.width) * sizeof(T));
   });
 }
@@ -25,7 +25,7 @@ void for_each_halo_field(Store& store, std::int32_t row, F&& f) {
 template <int Dim>
 std::size_t halo_bytes(const Brick<Dim>& brick, int link) {
   return static_cast<std::size_t>(brick.links[static_cast<std::size_t>(link)].num_sent) *
-         halo_record_bytes<Dim>();
+         halo_record_bytes<Dim>(brick.world->heat.is_on);
 }
 
 template <int Dim>
@@ -46,7 +46,7 @@ void unpack_halo(Brick<Dim>& brick, int link, std::span<const std::byte> message
   ParticleStore<Dim>& store = brick.store;
   BrickLink<Dim>& mine = brick.links[static_cast<std::size_t>(link)];
   const std::int32_t n = mine.ghosts.end - mine.ghosts.begin;
-  if (message.size() != static_cast<std::size_t>(n) * halo_record_bytes<Dim>()) {
+  if (message.size() != static_cast<std::size_t>(n) * halo_record_bytes<Dim>(store.has_heat)) {
     throw RunError("a halo message has " + std::to_string(message.size()) + " bytes for " +
                    std::to_string(n) + " ghosts");
   }
@@ -75,7 +75,8 @@ std::size_t results_bytes(const Brick<Dim>& brick, Side side) {
   const auto group = side == Side::Left ? BondSet<Dim>::Left : BondSet<Dim>::Right;
   const Rows rows =
       side == Side::Left ? brick.store.ghosts(Side::Left) : brick.band(Side::Right).rows;
-  return (static_cast<std::size_t>(rows.end - rows.begin) * Layout<Dim>::kForce +
+  const std::size_t record = Layout<Dim>::kForce + (brick.store.has_heat ? 2 : 0);
+  return (static_cast<std::size_t>(rows.end - rows.begin) * record +
           static_cast<std::size_t>(brick.bonds.size(group)) * BondSet<Dim>::kExported) *
          sizeof(double);
 }
@@ -88,6 +89,12 @@ void take_results(Brick<Dim>& brick, std::vector<double>& out) {
   store.take_out(rounder, ghosts.begin, ghosts.end);
   out.assign(store.f(ghosts.begin), store.f(ghosts.end));
   store.start_forces(rounder, ghosts.begin, ghosts.end);
+  if (store.has_heat) {
+    const double start = brick.world->heat.grain.rounder();
+    for (std::int32_t i = ghosts.begin; i < ghosts.end; ++i)
+      out.insert(out.end(), {store.q(i)[0] - start, store.q(i)[1]});
+    store.start_flows(start, ghosts.begin, ghosts.end);
+  }
   brick.bonds.export_group(BondSet<Dim>::Left, out);
 }
 
@@ -103,6 +110,9 @@ void add_results(Brick<Dim>& brick, std::span<const double> results) {
   for (std::int32_t i = rows.begin; i < rows.end; ++i) {
     double* row = brick.store.f(i);
     for (int c = 0; c < Layout<Dim>::kForce; ++c) row[c] += *f++;
+  }
+  for (std::int32_t i = rows.begin; brick.store.has_heat && i < rows.end; ++i) {
+    for (int c = 0; c < 2; ++c) brick.store.q(i)[c] += *f++;
   }
   brick.bonds.import_group(BondSet<Dim>::Right, brick.store, f);
 }

@@ -23,7 +23,7 @@ void unpack_halo(Brick<Dim>& brick, int link, std::span<const std::byte> message
 // forces of its contacts and sends them back, summed for every particle of the band: sums are
 // exact.
 //
-//   | force record of each particle of the band … | bonds of the cut … |
+//   | force record of each particle of the band … | their heat flows … | bonds of the cut … |
 
 /// Of a results message; the same until the next rebuild. @param side  left: sent, right: received
 template <int Dim>

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <barchan/core/brick/heat.hpp>
 #include <barchan/core/model/digest.hpp>
 
 namespace barchan {
@@ -13,6 +14,10 @@ void Measures::add(const Measures& other) {
   gravitational.add(other.gravitational);
   bonds_elastic.add(other.bonds_elastic);
   works.add(other.works);
+  heat.add(other.heat);
+  heat_capacity.add(other.heat_capacity);
+  max_temperature = std::max(max_temperature, other.max_temperature);
+  min_temperature = std::min(min_temperature, other.min_temperature);
   for (int c = 0; c < 3; ++c) momentum[c].add(other.momentum[c]);
   contacts += other.contacts;
   bonds += other.bonds;
@@ -105,7 +110,8 @@ void measure_wall_contacts(const Brick<Dim>& brick, Measures& m) {
         store.radius(c.row) -
         world.wall_shapes[w].foot(world.walls[w].point, c.image, store.x(c.row)).distance;
     const bool holds = overlap > 0.0 || (world.range > 0.0 && has_history(c));
-    if (!holds || !brick.walls.is_felt(store, world.wall_view(), k)) continue;
+    const bool is_idle = store.inverse_mass(c.row) == 0.0 && !world.wall_specs[w].is_loaded;
+    if (!holds || is_idle || !brick.walls.is_felt(store, world.wall_view(), k)) continue;
     const double* row = world.laws.row(
         world.laws.code(world.wall_specs[w].material, store.type[static_cast<std::size_t>(c.row)]));
     const Overlap at{overlap, store.inverse_radius(c.row), store.radius(c.row)};
@@ -136,6 +142,7 @@ Measures measure(const Brick<Dim>& brick, const Vec3& gravity) {
   }
   m.broken_bonds = brick.bonds.num_broken();
   m.works = brick.works;
+  if (brick.store.has_heat) measure_heat(brick, m);
   return m;
 }
 
@@ -165,6 +172,7 @@ std::vector<WallSums> measure_walls(const Brick<Dim>& brick) {
   std::vector<WallSums> sums(world.walls.size());
   for (std::size_t w = 0; w < brick.wall_sums.size(); ++w) sums[w].work = brick.wall_sums[w].work;
   brick.walls.measure(brick.store, {world.wall_view(), &world.laws, world.last_dt}, sums);
+  if (brick.store.has_heat) measure_wall_heat(brick, sums);
   return sums;
 }
 
@@ -208,7 +216,8 @@ std::uint64_t digest(const Brick<Dim>& brick) {
     double omega[3];
     for (int c = 0; c < kSpins<Dim>; ++c) omega[c] = store.u(i)[c] / store.radius(i);
     sum += particle_digest(store.id[static_cast<std::size_t>(i)], {store.x(i), std::size_t{Dim}},
-                           {store.v(i), std::size_t{Dim}}, {omega, std::size_t{kSpins<Dim>}});
+                           {store.v(i), std::size_t{Dim}}, {omega, std::size_t{kSpins<Dim>}},
+                           store.has_heat ? std::span(store.t(i), 2) : std::span<const double>());
   }
   return sum;
 }

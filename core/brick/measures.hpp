@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include <barchan/core/base/exact_sum.hpp>
 #include <barchan/core/brick/energy_works.hpp>
@@ -9,6 +10,7 @@ namespace barchan {
 
 /// Sums over a brick, added over bricks and ranks in any order.
 struct Measures {
+  static constexpr double kNever = std::numeric_limits<double>::infinity();
   ExactSum kinetic, elastic, gravitational;  ///< [J]
   ExactSum bonds_elastic;                    ///< the part of `elastic` that bonds have [J]
   ExactSum momentum[3];                      ///< [N·s]
@@ -18,7 +20,11 @@ struct Measures {
   double max_overlap_share = 0.0;  ///< of the smaller radius
   double max_speed = 0.0;          ///< [m/s]
   double max_inverse_mass = 0.0;   ///< of the lightest particle [1/kg]
-  EnergyWorks works;               ///< since the start; empty without output.energy
+  ExactSum heat, heat_capacity;    ///< m·c·T [J] and m·c [J/K]; where heat is on
+  double max_temperature = -kNever, min_temperature = kNever;  ///< [K]; without any infinite
+  EnergyWorks works;  ///< since the start; empty without output.energy
+  /// Of all particles, once heat has spread evenly [K].
+  [[nodiscard]] double mean_temperature() const { return heat.value() / heat_capacity.value(); }
   void add(const Measures& other);
 };
 

@@ -1,5 +1,6 @@
 #include <barchan/core/brick/rebuild.hpp>
 
+#include <cmath>
 #include <string>
 
 #include <barchan/core/base/bytes.hpp>
@@ -10,13 +11,22 @@
 #include <barchan/core/particles/row_particle.hpp>
 
 namespace barchan {
+namespace {
+
+/// Newcomers of a program may not say how warm they are.
+ParticleData with_temperature(ParticleData p, const HeatTable& heat) {
+  if (std::isnan(p.temperature)) p.temperature = heat.start;
+  return p;
+}
+
+}  // namespace
 
 template <int Dim>
 void Rebuild<Dim>::own(const Placement<Dim>& at, std::int32_t count) {
   brick_.place(at);
   brick_.store.num_owned = count;
   brick_.store.num_ghosts = {};
-  brick_.store.resize_for_ghosts(brick_.world->grain.rounder());
+  brick_.store.resize_for_ghosts(brick_.world->grain.rounder(), brick_.world->heat.grain.rounder());
   leavers_.way.assign(static_cast<std::size_t>(count), Leavers::Stays);
   carry_.clear();
 }
@@ -30,7 +40,8 @@ void Rebuild<Dim>::seed(const Placement<Dim>& at, std::span<const ParticleData> 
   const Grid<Dim>& grid = brick_.world->grid;
   for (std::int32_t i = 0; i < store.num_owned; ++i) {
     const auto row = static_cast<std::size_t>(i);
-    set_particle(store, i, particles[row], is_bonded[row] != 0);
+    set_particle(store, i, with_temperature(particles[row], brick_.world->heat),
+                 is_bonded[row] != 0);
     grid.wrap(store.x(i));
     store.key[row] = grid.key(store.x(i));
   }
@@ -172,7 +183,7 @@ void Rebuild<Dim>::take_in(std::span<const ParticleData> newcomers) {
     const auto row = static_cast<std::int32_t>(leavers_.way.size());
     store.resize_rows(static_cast<std::size_t>(std::max(row + 3, store.size())));
     leavers_.way.push_back(Leavers::Stays);
-    set_particle(store, row, p, false);
+    set_particle(store, row, with_temperature(p, brick_.world->heat), false);
     grid.wrap(store.x(row));
     store.key[static_cast<std::size_t>(row)] = grid.key(store.x(row));
   }
@@ -205,7 +216,7 @@ void Rebuild<Dim>::take_ghosts(std::span<const std::span<const std::byte>> messa
     records.push_back(decode_ghosts(messages[n], world, link.takes));
     store.num_ghosts[index_of(link.side)] += static_cast<std::int32_t>(records[n].size());
   }
-  store.resize_for_ghosts(world.grain.rounder());
+  store.resize_for_ghosts(world.grain.rounder(), world.heat.grain.rounder());
   std::int32_t row = store.ghost_begin(Side::Left);
   for (std::size_t n = 0; n < brick_.links.size(); ++n) {
     BrickLink<Dim>& link = brick_.links[n];

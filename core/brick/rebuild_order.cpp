@@ -182,7 +182,7 @@ void Rebuild<Dim>::order() {
   move_rows(store, source);
   if (!store.external.empty()) store.external.resize(stays * kForce);
   store.num_ghosts = {};
-  store.resize_for_ghosts(world.grain.rounder());
+  store.resize_for_ghosts(world.grain.rounder(), world.heat.grain.rounder());
   brick_.cells.cover(world.grid, brick_.box, store.num_owned);
   brick_.cells.add(world.grid, store, {0, store.num_owned});
   place_bands();

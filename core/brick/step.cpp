@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <barchan/core/brick/halo.hpp>
+#include <barchan/core/brick/heat.hpp>
 #include <barchan/core/brick/packing.hpp>
 #include <barchan/core/brick/prefetch.hpp>
 #include <barchan/core/simd/denormals.hpp>
@@ -65,6 +66,7 @@ void Step<Dim>::begin(const StepFrame& frame) {
   brick_.step_travel = brick_.speeds.top * world.last_dt;
   brick_.travel += brick_.step_travel;
   brick_.speeds = {};
+  brick_.top_flow = 0.0;
   looks_ = std::exchange(brick_.has_quick, false) && frame_.has_moved();
   if (world.search == ContactSearchKind::AllPairs) lists_.search_owned_again();
   if (looks_) PassageWatch<Dim>(world, brick_.store, brick_.passage).look_at(brick_.pairs);
@@ -92,6 +94,7 @@ void Step<Dim>::run_block(RowBlock& block) {
     run_with_prefetch(brick_, block, pairs);
   else
     brick_.world->kernels.pairs(pairs);
+  if (brick_.store.has_heat) conduct(brick_, pairs);
   if (block.final_row <= rows_done_) return;
   finish_rows({rows_done_, block.final_row}, block.has_extras);
   rows_done_ = block.final_row;
@@ -139,6 +142,7 @@ void Step<Dim>::advance_rows(Rows rows, bool has_extras) {
   ParticleStore<Dim>& store = brick_.store;
   const bool has_more = has_extras || !store.external.empty();
   if (has_more) add_extras(rows);
+  if (store.has_heat) warm(brick_, rows);
   const RowJob job{store.motion.data(),
                    store.spin.data(),
                    store.force.data(),
@@ -178,8 +182,11 @@ void Step<Dim>::finish_band(Side side) {
   // same step.
   if (!brick_.bonds.empty())
     compute_bonds(side == Side::Left ? BondSet<Dim>::Left : BondSet<Dim>::Right);
-  for (PairBlock& block : band.blocks)
-    world.kernels.pairs(job(band.across, block, 0.5 * (brick_.travel + band.travel)));
+  for (PairBlock& block : band.blocks) {
+    const PairJob pairs = job(band.across, block, 0.5 * (brick_.travel + band.travel));
+    world.kernels.pairs(pairs);
+    if (brick_.store.has_heat) conduct(brick_, pairs);
+  }
   if (band.rows.begin < band.rows.end) finish_rows(band.rows, true);
 }
 

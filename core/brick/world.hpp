@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <barchan/core/kernels/force_grain.hpp>
+#include <barchan/core/kernels/heat_table.hpp>
 #include <barchan/core/kernels/kernel_set.hpp>
 #include <barchan/core/kernels/law_table.hpp>
 #include <barchan/core/links/bonds.hpp>
@@ -28,6 +29,7 @@ struct World {
   Grid<Dim> grid;
   LawTable laws;
   ForceGrain grain;
+  HeatTable heat;
   KernelSet kernels;
   std::vector<BondLaw> bond_laws;
   std::vector<WallSpec> wall_specs;

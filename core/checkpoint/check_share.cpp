@@ -80,10 +80,12 @@ void check_particles(const CheckpointShare& s, const ShareLimits& limits, const 
   for_each_field<Dim>([&](const auto& field) {
     const auto& values = s.*field.saved;
     const auto column = static_cast<CheckpointColumn>(field.column);
+    const std::size_t rows = field.array.is_of_heat && !limits.has_heat ? 0 : n;
     if (!field.array.is_optional || !values.empty())
-      check.size(column, values.size(), n * static_cast<std::size_t>(field.width));
+      check.size(column, values.size(), rows * static_cast<std::size_t>(field.width));
   });
-  for (const auto column : {&CheckpointShare::positions, &CheckpointShare::radii})
+  for (const auto column :
+       {&CheckpointShare::positions, &CheckpointShare::radii, &CheckpointShare::temperatures})
     check.finite(column_of(column), s.*column);
   check.below(column_of(&CheckpointShare::types), s.types, limits.num_materials);
 }

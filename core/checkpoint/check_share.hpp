@@ -13,6 +13,7 @@ struct ShareLimits {
   int dimension = 2;
   std::size_t num_materials = 0, num_walls = 0, num_bond_laws = 0;
   int law = 0;  ///< of contact: its place in the list
+  bool has_heat = false;
 };
 
 /// Of a share: broken bonds, the work of walls, and where energy has gone.

@@ -12,9 +12,15 @@
 namespace barchan {
 namespace {
 
-constexpr std::array<std::string_view, 8> kParts{
-    "dimension and domain", "time.step", "gravity", "material",
-    "contact and pair",     "bond",      "wall",    "stage"};
+constexpr std::array<std::string_view, 9> kParts{"dimension and domain",
+                                                 "time.step",
+                                                 "gravity",
+                                                 "material",
+                                                 "contact and pair",
+                                                 "bond",
+                                                 "wall",
+                                                 "stage",
+                                                 "heat"};
 
 [[noreturn]] void refuse(const std::string& file, const std::string& what,
                          const std::string& remedy) {
@@ -29,6 +35,7 @@ CheckpointState take_state(ByteReader& in) {
   s.skin = in.take<double>();
   s.reach = in.take<double>();
   s.grain = in.take<double>();
+  s.heat_grain = in.take<double>();
   s.overlap_limit = in.take<double>();
   s.start_particles = in.take<std::int64_t>();
   s.has_bonds = in.take<std::uint8_t>() != 0;
@@ -80,6 +87,18 @@ void put_walls(ByteWriter& out, const std::vector<WallSpec>& walls) {
   }
 }
 
+void put_heat(ByteWriter& out, const Model& model) {
+  out.put(model.heat.is_on);
+  if (!model.heat.is_on) return;
+  out.put(model.heat.temperature);
+  for (const Material& m : model.materials) out.put(m.conductivity), out.put(m.heat_capacity);
+  for (const WallSpec& w : model.walls) {
+    out.put(w.temperature.has_value());
+    out.put(w.temperature.value_or(0.0));
+    out.put(w.heat_flux.value_or(0.0));
+  }
+}
+
 template <class Put>
 std::uint64_t hash_of(Put&& put_part) {
   std::vector<std::byte> bytes;
@@ -99,6 +118,7 @@ std::vector<std::byte> encode(const CheckpointState& s) {
   out.put(s.skin);
   out.put(s.reach);
   out.put(s.grain);
+  out.put(s.heat_grain);
   out.put(s.overlap_limit);
   out.put(s.start_particles);
   out.put(static_cast<std::uint8_t>(s.has_bonds));
@@ -127,14 +147,15 @@ CheckpointState decode_state(std::span<const std::byte> bytes, const std::string
   const auto is_before = [&](const TimePoint& p) {
     return std::isfinite(p.time) && p.step >= 0 && p.step <= state.step;
   };
-  const bool is_sane =
-      state.step >= 0 && state.stage >= 0 && state.stage_begin >= 0 &&
-      state.stage_begin <= state.step && state.skin >= 0.0 && std::isfinite(state.skin) &&
-      positive(state.reach) && state.start_particles >= 0 && positive(state.grain) &&
-      state.overlap_limit > 0.0 && state.look.step >= -1 && state.look.step <= state.step &&
-      (state.look.step < 0 || state.step - state.look.step < kEventSteps) &&
-      is_before(state.since) && is_before(state.stage_since) && state.last_dt >= 0.0 &&
-      std::isfinite(state.last_dt);
+  const bool is_sane = state.step >= 0 && state.stage >= 0 && state.stage_begin >= 0 &&
+                       state.stage_begin <= state.step && state.skin >= 0.0 &&
+                       std::isfinite(state.skin) && positive(state.reach) &&
+                       state.start_particles >= 0 && positive(state.grain) &&
+                       positive(state.heat_grain) && state.overlap_limit > 0.0 &&
+                       state.look.step >= -1 && state.look.step <= state.step &&
+                       (state.look.step < 0 || state.step - state.look.step < kEventSteps) &&
+                       is_before(state.since) && is_before(state.stage_since) &&
+                       state.last_dt >= 0.0 && std::isfinite(state.last_dt);
   if (!is_sane) refuse(file, "the state is not valid", "take another checkpoint");
   return state;
 }
@@ -164,6 +185,7 @@ std::vector<std::uint64_t> fingerprint(const Model& model) {
           out.put(s.kinetic_ratio);
         }
       }),
+      hash_of([&](ByteWriter& out) { put_heat(out, model); }),
   };
 }
 

@@ -43,6 +43,7 @@ struct CheckpointState {
   // What the particles of the start determined, and all lists with it.
   double skin = 0.0, reach = 0.0;  ///< [m]
   double grain = 1.0;              ///< of forces [N]
+  double heat_grain = 1.0;         ///< of heat flows [W]
   double overlap_limit = 1.0;      ///< limits.overlap_error, which the grain follows from
   std::int64_t start_particles = 0;
   bool has_bonds = false;

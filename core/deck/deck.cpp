@@ -69,11 +69,13 @@ Deck parse_deck(std::string_view text, const std::string& file_name,
   const deck::TableReader reader(root, draft.deck.model.dimension, "deck");
   deck::read_run_tables(reader, draft);
   deck::read_stages(reader, draft);
+  deck::read_heat(reader, draft);
   deck::read_material_names(reader, draft);
   deck::read_bonds(reader, draft);
   deck::read_walls(reader, draft);
   deck::read_particles(reader, draft);
   deck::read_contacts(reader, draft);
+  deck::check_heat(draft);
   deck::check_regions(draft.deck.sources, draft.deck.model.dimension);
   if (const auto fault = find_fault(draft.deck.model))
     throw InputError(deck::place_of(root, fault->key), fault->what, fault->remedy);

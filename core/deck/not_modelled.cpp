@@ -18,8 +18,8 @@ constexpr std::string_view kElastic[] = {" elastic mod", " shear modulus", " bul
 constexpr std::string_view kPoisson[] = {" poisson"};
 constexpr std::string_view kLaws[] = {" contact law", " contact model", " law", " hysteresis",
                                       " walton"};
-constexpr std::string_view kHeat[] = {" temperature", " thermal", " heat", " specific heat",
-                                      " conductivity"};
+constexpr std::string_view kHeat[] = {" thermal", " specific heat", " heat transfer", " emissivity",
+                                      " convecti"};
 constexpr std::string_view kViscous[] = {" viscos"};
 constexpr std::string_view kFluid[] = {" fluid",   " drag",    " buoyan", " pore",
                                        " permeab", " lubrica", " cfd"};
@@ -67,7 +67,9 @@ constexpr Group kGroups[] = {
     {kLaws,
      {"any law of contact but linear springs and Hertz–Mindlin is",
       "choose one of these by `model` in [contact]"}},
-    {kHeat, {"heat is", "leave it out"}},
+    {kHeat,
+     {"heat but by conductivity and heat_capacity of materials is",
+      "leave it out; with a table [heat] these two let it flow through contacts"}},
     {kViscous,
      {"viscosity is",
       "leave it out; give normal_damping or restitution for contacts that lose energy"}},

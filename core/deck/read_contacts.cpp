@@ -59,18 +59,9 @@ struct Users {
 
 Users find_users(const Deck& deck) {
   Users users;
-  users.particles.assign(deck.model.materials.size(), false);
-  users.walls = users.particles;
+  users.particles = made_into_particles(deck);
+  users.walls.assign(users.particles.size(), false);
   for (const WallSpec& wall : deck.model.walls) users.walls[wall.material] = true;
-  for (const ParticleSource& source : deck.sources) {
-    if (const auto* list = std::get_if<ListSource>(&source.kind)) {
-      for (const ParticleData& particle : list->particles) users.particles[particle.type] = true;
-    } else if (source.material) {
-      users.particles[*source.material] = true;
-    } else {
-      users.particles.assign(users.particles.size(), true);
-    }
-  }
   return users;
 }
 
@@ -318,6 +309,9 @@ void read_material_names(const TableReader& root, DeckDraft& draft) {
     Material material;
     material.name = table.string("name");
     material.density = table.number("density");
+    const Model& model = draft.deck.model;
+    material.conductivity = heat_number(table, "conductivity", model).value_or(0.0);
+    material.heat_capacity = heat_number(table, "heat_capacity", model).value_or(0.0);
     draft.materials.add(material.name, table.place("name"));
     draft.deck.model.materials.push_back(material);
   }

@@ -69,6 +69,7 @@ ParticleData defaults_of(const ParticleSource& source) {
   particle.density = source.density.value_or(0.0);
   particle.velocity = source.velocity;
   particle.omega = source.omega;
+  if (source.temperature) particle.temperature = *source.temperature;
   return particle;
 }
 
@@ -80,6 +81,7 @@ ParticleData read_particle(const TableReader& table, const ParticleData& default
   particle.radius = table.number("radius");
   if (table.has("velocity")) particle.velocity = table.vector("velocity");
   if (table.has("omega")) particle.omega = table.spin("omega");
+  particle.temperature = heat_number(table, "temperature", model).value_or(particle.temperature);
   if (const auto material = table.optional_string("material")) {
     particle.type = draft.materials.at(*material, table.place("material"));
   }
@@ -133,6 +135,7 @@ ParticleSource read_common(const TableReader& table, const DeckDraft& draft,
   source.density = table.optional_number("density");
   source.velocity = table.vector("velocity");
   source.omega = table.spin("omega");
+  source.temperature = heat_number(table, "temperature", draft.deck.model);
   if (const auto bond = table.optional_string("bond"))
     source.bond = draft.bonds.at(*bond, table.place("bond"));
   source.links = read_links(table);

@@ -75,6 +75,9 @@ WallSpec read_wall(const TableReader& table, const DeckDraft& draft) {
   wall.normal = read_normal(table);
   wall.velocity = table.vector("velocity");
   wall.place = table.place();
+  table.has_one_of("temperature", "heat_flux");
+  wall.temperature = heat_number(table, "temperature", draft.deck.model);
+  wall.heat_flux = heat_number(table, "heat_flux", draft.deck.model);
   if (const auto stage = table.optional_string("from_stage")) {
     wall.from_stage = draft.stages.at(*stage, table.place("from_stage"));
   }

@@ -17,6 +17,8 @@ constexpr KeySpec kParticleKeys[] = {
      "at the start; added to that of a file"},
     {"[[particles]]", "omega", T::Spin, "rad/s", "zero",
      "angular velocity at the start; added to that of a file; in 2D about z"},
+    {"[[particles]]", "temperature", T::NonNegativeNumber, "K", "that of `[heat]`",
+     "at the start; of a file instead of its own"},
     {"[[particles]]", "bond", T::String, "", "none",
      "name of a bond law that links those of this source that touch; of a file with bonds, the law "
      "of them all"},
@@ -76,6 +78,7 @@ constexpr KeySpec kParticleKeys[] = {
     {"particle", "material", T::String, "", "that of the source", "name of a material"},
     {"particle", "density", T::PositiveNumber, "kg/m³, 2D kg/m²", "that of the source",
      "instead of the material's"},
+    {"particle", "temperature", T::NonNegativeNumber, "K", "that of the source", "at the start"},
 
     {"box", "lo", T::Vector, "m", "required", "lower corner"},
     {"box", "hi", T::Vector, "m", "required", "upper corner"},

@@ -15,6 +15,10 @@ constexpr KeySpec kPhysicsKeys[] = {
     {"[[material]]", "name", T::String, "", "required", "unique"},
     {"[[material]]", "density", T::PositiveNumber, "kg/m³, 2D kg/m²", "required",
      "of a particle's own body"},
+    {"[[material]]", "conductivity", T::PositiveNumber, "W/(m·K)", "none",
+     "of heat; with `[heat]` what particles are made of needs it"},
+    {"[[material]]", "heat_capacity", T::PositiveNumber, "J/(kg·K)", "none",
+     "per mass; with `[heat]` what particles are made of needs it"},
     {"[[pair]]", "materials", T::Names, "", "required",
      "the names of two materials, which may be the same"},
     {"[[bridge]]", "materials", T::Names, "", "required",
@@ -92,6 +96,10 @@ constexpr KeySpec kPhysicsKeys[] = {
     {"[[wall]]", "damping", T::NonNegativeNumber, "N·s/m", "0", "viscous, on a loaded plate"},
     {"[[wall]]", "from_stage", T::String, "", "the first stage",
      "name of the stage at which the wall appears"},
+    {"[[wall]]", "temperature", T::NonNegativeNumber, "K", "none",
+     "that the wall keeps; this or `heat_flux`, or no heat goes through it"},
+    {"[[wall]]", "heat_flux", T::Number, "W/m²", "none",
+     "into every particle that touches the wall, times its cross-section (disks: its diameter)"},
 };
 
 }  // namespace

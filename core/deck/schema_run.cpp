@@ -18,6 +18,7 @@ constexpr KeySpec kRunKeys[] = {
     {"deck", "contact", T::Table, "", "none", "rules for all contacts"},
     {"deck", "bridge", T::Tables, "", "none", "liquid between touching particles"},
     {"deck", "bond", T::Tables, "", "none", "laws of linking elements"},
+    {"deck", "heat", T::Table, "", "none", "gives particles temperatures, and lets heat flow"},
     {"deck", "particles", T::Tables, "", "required", "where particles come from"},
     {"deck", "wall", T::Tables, "", "none", "planes and plates"},
     {"deck", "stage", T::Tables, "", "one stage", "stages of the run, in order"},
@@ -54,6 +55,9 @@ constexpr KeySpec kRunKeys[] = {
      "the stage ends after this time at the latest"},
     {"[[stage]]", "kinetic_ratio", T::NonNegativeNumber, "", "0",
      "the stage ends when kinetic over elastic energy falls below this; 0 = never"},
+
+    {"[heat]", "temperature", T::NonNegativeNumber, "K", "293.15",
+     "at the start, of particles that say nothing else"},
 
     {"[search]", "kind", T::Choice, "", "cells",
      "`cells` with lists of candidates, or every pair with every other, as a reference",

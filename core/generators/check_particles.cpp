@@ -18,6 +18,17 @@ std::string at(const ParticleData& p, int dimension) {
   return fmt::format("particle {} at {}", p.id, in_brackets(p.position, dimension));
 }
 
+/// A temperature that is not given is that of the model.
+template <class Refuse>
+void check_heat(const Model& model, const ParticleData& p, const Refuse& refuse) {
+  if (!std::isnan(p.temperature) && !(p.temperature >= 0.0 && std::isfinite(p.temperature)))
+    refuse(fmt::format("has temperature {:g}", p.temperature), "give zero or more [K]");
+  const Material& material = model.materials[static_cast<std::size_t>(p.type)];
+  if (!(material.conductivity > 0.0) || !(material.heat_capacity > 0.0))
+    refuse(fmt::format("is of '{}', which has no conductivity or no heat_capacity", material.name),
+           "add both to the material");
+}
+
 void check_each(const Model& model, const ParticleData& p, std::size_t index,
                 const PlaceOf& place_of) {
   const auto refuse = [&](const std::string& what, const char* remedy) {
@@ -46,6 +57,7 @@ void check_each(const Model& model, const ParticleData& p, std::size_t index,
   if (p.type < 0 || p.type >= static_cast<std::int32_t>(model.materials.size())) {
     refuse(fmt::format("is of type {}", p.type + 1), "every type needs a material in the deck");
   }
+  if (model.heat.is_on) check_heat(model, p, refuse);
   if (!is_inside(model.domain, p.position, model.dimension)) {
     refuse("is outside the domain", "enlarge the domain or leave the particle out");
   }

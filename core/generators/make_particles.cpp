@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <type_traits>
 #include <unordered_set>
@@ -17,6 +18,7 @@
 namespace barchan {
 namespace {
 
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr const char* kStays = "leave velocity and omega out, or fix the box of those that stay";
 
 std::vector<Grain> make_ring(const RingSource& ring) {
@@ -190,6 +192,12 @@ class Maker {
                        std::size_t index) const {
     wrap(particle.position, model_.domain, model_.dimension);
     particle.fixed = is_fixed(particle, source);
+    if (!model_.heat.is_on)
+      particle.temperature = kNone;
+    else if (source.temperature && !std::holds_alternative<ListSource>(source.kind))
+      particle.temperature = *source.temperature;
+    else if (std::isnan(particle.temperature))
+      particle.temperature = model_.heat.temperature;
     if (is_contradictory(particle, source)) {
       throw InputError(place_in(source, index),
                        fmt::format("particle {} is fixed and has a velocity", particle.id), kStays);

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -20,6 +21,8 @@ struct FileField {
       value;
   bool is_required = true;                    ///< in a table; of a vector x and y
   std::array<std::string_view, 6> aliases{};  ///< as other programs call it, see ColumnAlias
+
+  bool may_lack = false;  ///< not written where no particle has it, which is then not a number
 
   [[nodiscard]] constexpr int num_components() const { return value.index() == 3 ? 3 : 1; }
 };
@@ -43,12 +46,17 @@ inline constexpr std::array kFileFields{
               &ParticleData::omega,
               false,
               {"omega", "angularvelocity", "angvel", "w"}},
+    FileField{"temperature", {"temperature"}, &ParticleData::temperature, false, {"temp"}, true},
 };
+
+/// Whether any has a temperature.
+[[nodiscard]] bool have_heat(std::span<const ParticleData> particles);
 
 /// Particles as the arrays of a snapshot.
 class ParticleArrays {
  public:
-  ParticleArrays();
+  /// @param has_heat  particles have temperatures
+  explicit ParticleArrays(bool has_heat);
   void add(const ParticleData& particle);
   /// Of this object, which lives longer.
   [[nodiscard]] VtpArrays arrays(std::int64_t step, double time) const;
@@ -56,6 +64,7 @@ class ParticleArrays {
  private:
   using Values =
       std::variant<std::vector<std::int64_t>, std::vector<std::int32_t>, std::vector<double>>;
+  bool has_heat_;
   std::array<Values, kFileFields.size()> values_;
 };
 

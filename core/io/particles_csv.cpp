@@ -52,10 +52,11 @@ bool is_required(const Column& column) {
   return column.field != nullptr && column.field->is_required && column.component < kAxesOfDisks;
 }
 
-std::string all_names() {
+std::string all_names(bool has_heat) {
   std::string names;
   for (const Column& column : kColumns) {
-    if (column.field != nullptr) names += (names.empty() ? "" : ",") + std::string(column.name);
+    if (column.field != nullptr && (has_heat || !column.field->may_lack))
+      names += (names.empty() ? "" : ",") + std::string(column.name);
   }
   return names;
 }
@@ -160,7 +161,8 @@ ParticleFile parse_particles_csv(std::string_view text, const std::string& file)
 
 void write_particles_csv(const std::string& path, std::span<const ParticleData> particles) {
   OutputFile file(path);
-  file.write(all_names() + "\n");
+  const bool has_heat = have_heat(particles);
+  file.write(all_names(has_heat) + "\n");
   fmt::memory_buffer row;
   const auto put = [&row](const auto& number) {
     if (row.size() > 0) row.push_back(',');
@@ -172,6 +174,7 @@ void write_particles_csv(const std::string& path, std::span<const ParticleData> 
   for (const ParticleData& p : particles) {
     row.clear();
     for (const FileField& field : kFileFields) {
+      if (field.may_lack && !has_heat) continue;
       std::visit(
           [&]<class T>(T ParticleData::*member) {
             if constexpr (std::is_same_v<T, Vec3>)

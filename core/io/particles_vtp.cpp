@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include <fmt/format.h>
@@ -14,7 +16,8 @@ namespace {
 std::string needed_arrays() {
   std::string names;
   for (const FileField& field : kFileFields) {
-    if (!field.array.empty()) names += (names.empty() ? "" : ", ") + std::string(field.array);
+    if (!field.array.empty() && !field.may_lack)
+      names += (names.empty() ? "" : ", ") + std::string(field.array);
   }
   return names + " are needed";
 }
@@ -45,6 +48,7 @@ void append_piece(ParticleFile& result, const VtpPiece& piece, const std::string
                      "give the file of the particles, whose name lacks _bonds");
   std::vector<ParticleData> particles(piece.points.size() / 3);
   for (const FileField& field : kFileFields) {
+    if (field.may_lack && piece.find(field.array) == nullptr) continue;
     std::visit(
         [&]<class T>(T ParticleData::*member) {
           const auto& values = values_of<NumberOf<T>>(piece, field, file);
@@ -82,7 +86,12 @@ ParticleFile parse_particles_vtp(std::string_view text, const std::string& file)
   return result;
 }
 
-ParticleArrays::ParticleArrays() {
+bool have_heat(std::span<const ParticleData> particles) {
+  return std::ranges::any_of(particles,
+                             [](const ParticleData& p) { return !std::isnan(p.temperature); });
+}
+
+ParticleArrays::ParticleArrays(bool has_heat) : has_heat_(has_heat) {
   for (std::size_t f = 0; f < kFileFields.size(); ++f) {
     std::visit([&]<class T>(T ParticleData::*) { values_[f] = std::vector<NumberOf<T>>(); },
                kFileFields[f].value);
@@ -108,6 +117,7 @@ VtpArrays ParticleArrays::arrays(std::int64_t step, double time) const {
   VtpArrays arrays{step, time, {}, {}};
   for (std::size_t f = 0; f < kFileFields.size(); ++f) {
     const FileField& field = kFileFields[f];
+    if (field.may_lack && !has_heat_) continue;
     if (field.array.empty()) {
       arrays.points = std::get<std::vector<double>>(values_[f]);
       continue;
@@ -123,7 +133,7 @@ VtpArrays ParticleArrays::arrays(std::int64_t step, double time) const {
 }
 
 void write_particles_vtp(const std::string& path, std::span<const ParticleData> particles) {
-  ParticleArrays arrays;
+  ParticleArrays arrays(have_heat(particles));
   for (const ParticleData& p : particles) arrays.add(p);
   write_vtp(path, arrays.arrays(0, 0.0));
 }

@@ -27,6 +27,8 @@ struct ContactLawIn {
   double (*energy)(const double* row, const Overlap& overlap, const double* history) = nullptr;
   /// Of two that overlap so, of a reduced mass [s]; null where it is the same at any overlap.
   double (*stable_step)(const double* row, const Overlap& overlap, double mass) = nullptr;
+  /// Squared radius of the contact, through which heat flows [m²]; not above zero: none does.
+  double (*area)(const double* row, const Overlap& overlap) = nullptr;
 };
 
 /// A law of contact as the program sees it, whichever it is. Made from the law's file alone.
@@ -85,6 +87,12 @@ ContactLawIn<Dim> law_in() {
         return Law::stable_step(row, overlap, mass, Layout<Dim>::kSpinGain);
       };
     }
+    law.area = [](const double* row, const Overlap& overlap) {
+      if constexpr (requires { Law::area(row, overlap); })
+        return Law::area(row, overlap);
+      else
+        return overlap.depth / overlap.inverse_radius;
+    };
     return law;
   }
 }

@@ -67,6 +67,14 @@ void add_to_row(ParticleStore<Dim>& store, std::int32_t i, const PairForce<S, Di
   }
 }
 
+/// A fixed particle that is listed for the heat of the wall alone.
+template <int Dim>
+bool is_only_warmed(const ParticleStore<Dim>& store, const WallView<Dim>& walls,
+                    const WallContact<Dim>& contact) {
+  return store.inverse_mass(contact.row) == 0.0 &&
+         !walls.specs[static_cast<std::size_t>(contact.wall)].is_loaded;
+}
+
 }  // namespace
 
 void WallSums::add(const WallSums& other) {
@@ -75,6 +83,7 @@ void WallSums::add(const WallSums& other) {
     torque[c].add(other.torque[c]);
   }
   work.add(other.work);
+  heat_flow.add(other.heat_flow);
 }
 
 template <int Dim>
@@ -86,7 +95,8 @@ void WallContacts<Dim>::search(const ParticleStore<Dim>& store, const WallView<D
     const bool is_fixed = store.inverse_mass(row) == 0.0;
     for (std::size_t w = 0; w < walls.specs.size(); ++w) {
       const bool is_loaded = walls.specs[w].is_loaded;
-      if (!walls.states[w].is_active || (is_fixed && !is_loaded)) continue;
+      if (!walls.states[w].is_active || (is_fixed && !is_loaded && !walls.specs[w].gives_heat()))
+        continue;
       walls.shapes[w].for_each_near(
           walls.states[w].point, store.x(row), store.radius(row) + beyond,
           [&](const WallImage& image) {
@@ -203,6 +213,7 @@ void WallContacts<Dim>::add_to_rows(ParticleStore<Dim>& store, const Frame& fram
       add_to_row(store, it->row, kept_[static_cast<std::size_t>(kept++)]);
       continue;
     }
+    if (is_only_warmed(store, frame.walls, *it)) continue;
     const Push p = push(store, frame, static_cast<std::size_t>(it - list_.begin()), *it);
     add_to_row(store, it->row, p.on_particle);
     const Vec3& v = frame.walls.states[w].velocity;
@@ -217,6 +228,7 @@ void WallContacts<Dim>::measure(const ParticleStore<Dim>& store, const Frame& fr
                                 std::span<WallSums> sums) const {
   for (std::size_t k = 0; k < list_.size(); ++k) {
     WallContact<Dim> contact = list_[k];
+    if (is_only_warmed(store, frame.walls, contact)) continue;
     const Push p = push(store, frame, k, contact);
     if (p.on_wall.isZero(0.0)) continue;
     const auto w = static_cast<std::size_t>(contact.wall);
@@ -240,6 +252,7 @@ std::vector<WallPush> WallContacts<Dim>::pushes(const ParticleStore<Dim>& store,
   std::vector<WallPush> all;
   for (std::size_t k = 0; k < list_.size(); ++k) {
     WallContact<Dim> contact = list_[k];
+    if (is_only_warmed(store, frame.walls, contact)) continue;
     const Push p = push(store, frame, k, contact);
     if (p.on_wall.isZero(0.0)) continue;
     const Vec3& normal = frame.walls.specs[static_cast<std::size_t>(contact.wall)].normal;

@@ -27,12 +27,14 @@ struct WallState {
   Vec3 force = Vec3::Zero();   ///< of the particles on the wall, as last reduced [N]
   Vec3 torque = Vec3::Zero();  ///< about `point` [N·m]
   double work = 0.0;           ///< [J]
+  double heat_flow = 0.0;      ///< into particles, as last reduced [W]
 };
 
 /// Order-free sums over the contacts of one wall.
 struct WallSums {
   ExactSum force[3], torque[3];  ///< of the particles on the wall [N], about its point [N·m]
   ExactSum work;                 ///< of the wall on the particles [J]
+  ExactSum heat_flow;            ///< from the wall into the particles [W]
   void add(const WallSums& other);
 };
 
@@ -95,7 +97,7 @@ template <int Dim>
 class WallContacts {
  public:
   /// Lists rows that lack less than `beyond` to touch an active wall, by row, wall, image. A fixed
-  /// particle touches loaded plates only: there alone its force is of use.
+  /// particle touches loaded plates only, where alone its force is of use, and what gives it heat.
   void search(const ParticleStore<Dim>& store, const WallView<Dim>& walls, double beyond);
   /// Before positions of these rows are wrapped into the box: images as seen from there.
   void foresee_wrap(const ParticleStore<Dim>& store, const Grid<Dim>& grid,

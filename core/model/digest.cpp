@@ -3,6 +3,7 @@
 #include <xxhash.h>
 
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <vector>
 
@@ -11,8 +12,9 @@
 namespace barchan {
 
 std::uint64_t particle_digest(std::int64_t id, std::span<const double> position,
-                              std::span<const double> velocity, std::span<const double> omega) {
-  std::array<std::byte, 8 * 10> bytes{};
+                              std::span<const double> velocity, std::span<const double> omega,
+                              std::span<const double> temperature) {
+  std::array<std::byte, 8 * 12> bytes{};
   std::size_t used = 0;
   const auto put = [&](const void* from, std::size_t count) {
     std::memcpy(bytes.data() + used, from, count);
@@ -22,6 +24,7 @@ std::uint64_t particle_digest(std::int64_t id, std::span<const double> position,
   put(position.data(), position.size_bytes());
   put(velocity.data(), velocity.size_bytes());
   put(omega.data(), omega.size_bytes());
+  put(temperature.data(), temperature.size_bytes());
   return XXH3_64bits(bytes.data(), used);
 }
 
@@ -45,6 +48,7 @@ std::uint64_t particle_set_hash(const ParticleSet& set) {
     for (const double value : {p.radius, p.density}) out.put(value);
     for (const Vec3* v : {&p.position, &p.velocity, &p.omega})
       out.put_all(std::span<const double>(v->data(), 3));
+    if (!std::isnan(p.temperature)) out.put(p.temperature);
     take();
   }
   for (const BondData& b : set.bonds) {

@@ -42,7 +42,15 @@ struct Domain {
 
 struct Material {
   std::string name;
-  double density = 0.0;  ///< [kg/m³]; in 2D areal, [kg/m²] for unit thickness
+  double density = 0.0;        ///< [kg/m³]; in 2D areal, [kg/m²] for unit thickness
+  double conductivity = 0.0;   ///< [W/(m·K)]; 0: not given
+  double heat_capacity = 0.0;  ///< [J/(kg·K)]; 0: not given
+};
+
+/// Whether particles have temperatures, and that of the start.
+struct HeatSpec {
+  bool is_on = false;
+  double temperature = 293.15;  ///< [K], of particles that say nothing else
 };
 
 /// Contact constants of every pair of materials: entry (a, b) = (b, a) = constants[a·n + b].
@@ -105,6 +113,10 @@ struct WallSpec {
   double damping = 0.0;  ///< viscous, on a loaded plate [N·s/m]
   int from_stage = 0;    ///< absent before this stage
   SourcePlace place;     ///< in the deck, if it comes from one
+  // Where heat is on; at most one of the two. Neither: no heat goes through it.
+  std::optional<double> temperature = std::nullopt;  ///< kept [K]
+  std::optional<double> heat_flux = std::nullopt;    ///< into what touches it [W/m²]
+  [[nodiscard]] bool gives_heat() const { return temperature || heat_flux; }
 };
 
 /// A stage of the run; it ends after a time or when the kinetic-energy ratio is low enough.
@@ -159,6 +171,7 @@ struct ParticleData {
   Vec3 velocity = Vec3::Zero();
   Vec3 omega = Vec3::Zero();  ///< [rad/s]
   bool fixed = false;         ///< never moves: inverse mass and inertia are zero
+  double temperature = std::numeric_limits<double>::quiet_NaN();  ///< [K]; none: not a number
 };
 
 /// An intact bond between two particles, dimension-free; straight and unstressed unless it says
@@ -191,6 +204,7 @@ struct Model {
   std::vector<BondLaw> bond_laws;
   std::vector<WallSpec> walls;
   std::vector<Stage> stages;  ///< never empty
+  HeatSpec heat;
   SearchSpec search;
   LimitSpec limits;
   OutputSpec output;

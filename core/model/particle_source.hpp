@@ -113,6 +113,7 @@ struct ParticleSource {
   std::optional<double> density;  ///< instead of the material's (or the file's), 2D areal
   Vec3 velocity = Vec3::Zero();   ///< [m/s]; a file's own velocities are added to it
   Vec3 omega = Vec3::Zero();      ///< [rad/s]; a file's own are added to it
+  std::optional<double> temperature;  ///< [K], instead of the deck's or the file's
   std::optional<int> bond;  ///< index into Model::bond_laws: bonds those of this source that touch
       ///< (ring: the neighbours along it; touch: gap <= 1e-6 of the radii's sum), see BondLinks
   BondLinks links;

@@ -102,6 +102,27 @@ void check_contacts(const Model& model) {
   }
 }
 
+void check_heat(const Model& model) {
+  if (!model.heat.is_on) return;
+  not_negative("heat.temperature", model.heat.temperature);
+  for (std::size_t a = 0; a < model.materials.size(); ++a) {
+    const std::string key = fmt::format("material.{}.", a + 1);
+    not_negative(key + "conductivity", model.materials[a].conductivity);
+    not_negative(key + "heat_capacity", model.materials[a].heat_capacity);
+  }
+  for (std::size_t w = 0; w < model.walls.size(); ++w) {
+    const WallSpec& wall = model.walls[w];
+    const std::string key = fmt::format("wall.{}.", w + 1);
+    if (wall.temperature) not_negative(key + "temperature", *wall.temperature);
+    const double flux = wall.heat_flux.value_or(0.0);
+    require(std::isfinite(flux), key + "heat_flux", fmt::format("heat_flux = {:g}", flux),
+            "give a finite number");
+    require(!(wall.temperature && wall.heat_flux), key + "heat_flux",
+            fmt::format("wall '{}' has both a temperature and a heat_flux", wall.name),
+            "keep one of them");
+  }
+}
+
 void check_bonds(const Model& model) {
   for (std::size_t b = 0; b < model.bond_laws.size(); ++b) {
     const BondLaw& law = model.bond_laws[b];
@@ -227,6 +248,7 @@ void check(const Model& model) {
   check_bonds(model);
   check_stages(model);
   check_walls(model);
+  check_heat(model);
   if (model.search.skin) not_negative("search.skin", *model.search.skin);
   check_limits(model.limits);
   check_counts(model);

@@ -22,6 +22,12 @@ struct RowArray {
   int width;  ///< numbers a row
   /// Of owned rows alone, and only while someone uses it: else it is empty, which means zeros.
   bool is_optional = false;
+  /// Only where particles have temperatures (ParticleStore::has_heat).
+  bool is_of_heat = false;
+
+  [[nodiscard]] bool is_in(const ParticleStore<Dim>& store) const {
+    return is_of_heat ? store.has_heat : !is_optional || !(store.*values).empty();
+  }
 };
 
 /// Wider numbers first, so that records of them need no gaps.
@@ -31,6 +37,7 @@ inline constexpr std::tuple kRowArrays{
     RowArray<Dim, double>{&ParticleStore<Dim>::spin, Layout<Dim>::kSpin},
     RowArray<Dim, double>{&ParticleStore<Dim>::density, 1},
     RowArray<Dim, double>{&ParticleStore<Dim>::external, Layout<Dim>::kForce, true},
+    RowArray<Dim, double>{&ParticleStore<Dim>::heat, 2, false, true},
     RowArray<Dim, std::int64_t>{&ParticleStore<Dim>::id, 1},
     RowArray<Dim, std::int64_t>{&ParticleStore<Dim>::key, 1},
     RowArray<Dim, std::uint8_t>{&ParticleStore<Dim>::type, 1},
@@ -71,7 +78,7 @@ template <int Dim>
 constexpr auto make_fields() {
   using L = Layout<Dim>;
   using Share = CheckpointShare;
-  const auto& [motion, spin, density, external, id, key, type, flags] = kRowArrays<Dim>;
+  const auto& [motion, spin, density, external, heat, id, key, type, flags] = kRowArrays<Dim>;
   const auto& surface = std::get < Dim == 2 ? 0 : 1 > (kRowArrays<Dim>);
   using Reals = Field<Dim, double>;
   using Bytes = Field<Dim, std::uint8_t>;
@@ -88,6 +95,8 @@ constexpr auto make_fields() {
       Bytes{"types", "", type, 0, 1, false, 23, &Share::types},
       Bytes{"flags", "", flags, 0, 1, false, 24, &Share::flags},
       Reals{"external forces", "N", external, 0, L::kForce, false, 25, &Share::externals},
+      Reals{"temperatures", "K", heat, 0, 1, true, 27, &Share::temperatures},
+      Reals{"temperature remainders", "K", heat, 1, 1, false, 28, &Share::temperature_remainders},
   };
 }
 
@@ -102,11 +111,12 @@ constexpr void for_each_field(Visit&& visit) {
 
 /// Bytes a particle in a halo: its fields there, in the order of the table.
 template <int Dim>
-constexpr std::size_t halo_record_bytes() {
+constexpr std::size_t halo_record_bytes(bool has_heat = false) {
   std::size_t bytes = 0;
-  for_each_field<Dim>([&bytes](const auto& field) {
+  for_each_field<Dim>([&](const auto& field) {
     using Number = typename std::decay_t<decltype(field)>::Number;
-    if (field.is_in_halo) bytes += static_cast<std::size_t>(field.width) * sizeof(Number);
+    if (field.is_in_halo && (has_heat || !field.array.is_of_heat))
+      bytes += static_cast<std::size_t>(field.width) * sizeof(Number);
   });
   return bytes;
 }

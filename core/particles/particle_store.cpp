@@ -9,17 +9,21 @@ namespace barchan {
 template <int Dim>
 void ParticleStore<Dim>::resize_rows(std::size_t n) {
   for_each_array<Dim>([&](const auto& array) {
-    if (!array.is_optional)
+    if (!array.is_optional && (has_heat || !array.is_of_heat))
       resize_with_room(this->*array.values, n * static_cast<std::size_t>(array.width));
   });
 }
 
 template <int Dim>
-void ParticleStore<Dim>::resize_for_ghosts(double rounder) {
+void ParticleStore<Dim>::resize_for_ghosts(double rounder, double heat_rounder) {
   const auto n = static_cast<std::size_t>(size());
   resize_rows(n);
   resize_with_room(force, n * L::kForce);
   start_forces(rounder, 0, size());
+  if (has_heat) {
+    resize_with_room(heat_flow, n * 2);
+    start_flows(heat_rounder, 0, size());
+  }
   for (std::int32_t w = waste(); w < waste() + 2; ++w) {
     RowRecord<Dim>().put(*this, w);
     x(w)[0] = -1e9 * (1 + w - waste());
@@ -36,6 +40,11 @@ void ParticleStore<Dim>::start_forces(double rounder, std::int32_t begin, std::i
 }
 
 template <int Dim>
+void ParticleStore<Dim>::start_flows(double rounder, std::int32_t begin, std::int32_t end) {
+  for (std::int32_t i = begin; i < end; ++i) q(i)[0] = rounder, q(i)[1] = 0.0;
+}
+
+template <int Dim>
 void ParticleStore<Dim>::take_out(double rounder, std::int32_t begin, std::int32_t end) {
   for (double *f = this->f(begin), *last = this->f(end); f != last; f += 4)
     for (int c = 0; c < 3; ++c) f[c] -= rounder;
@@ -49,7 +58,9 @@ void ParticleStore<Dim>::start_extra(std::int32_t begin, std::int32_t end) {
 
 template <int Dim>
 std::size_t ParticleStore<Dim>::bytes() const {
-  std::size_t bytes = (force.capacity() + reference.capacity() + extra.capacity()) * sizeof(double);
+  std::size_t bytes =
+      (force.capacity() + reference.capacity() + extra.capacity() + heat_flow.capacity()) *
+      sizeof(double);
   for_each_array<Dim>([&](const auto& array) {
     const auto& values = this->*array.values;
     bytes += values.capacity() * sizeof(values[0]);

@@ -28,8 +28,11 @@ struct ParticleStore {
   AlignedVector<std::uint8_t> type;  ///< material
   AlignedVector<std::uint8_t> flags;
   AlignedVector<double> external;  ///< owned: force records added each step; empty unless asked for
-  AlignedVector<double> extra;     ///< force records beside contacts, of rows from extra_begin on
+  AlignedVector<double> heat;      ///< temperature and its remainder [K]; empty without has_heat
+  AlignedVector<double> heat_flow;  ///< into each row and the sum of sizes [W]; see heat.hpp
+  AlignedVector<double> extra;      ///< force records beside contacts, of rows from extra_begin on
   std::int32_t extra_begin = 0;
+  bool has_heat = false;  ///< particles have temperatures
   std::int32_t num_owned = 0;
   std::array<std::int32_t, 2> num_ghosts{};
 
@@ -65,6 +68,15 @@ struct ParticleStore {
   [[nodiscard]] double* f(std::int32_t i) {
     return force.data() + std::size_t{L::kForce} * static_cast<std::size_t>(i);
   }
+  /// Temperature and its remainder [K]. @pre has_heat
+  [[nodiscard]] double* t(std::int32_t i) { return heat.data() + 2 * static_cast<std::size_t>(i); }
+  [[nodiscard]] const double* t(std::int32_t i) const {
+    return heat.data() + 2 * static_cast<std::size_t>(i);
+  }
+  /// Heat flow and sum of sizes [W]. @pre has_heat
+  [[nodiscard]] double* q(std::int32_t i) {
+    return heat_flow.data() + 2 * static_cast<std::size_t>(i);
+  }
   /// Of walls, bonds and callers. @pre start_extra() with this row
   [[nodiscard]] double* e(std::int32_t i) {
     return extra.data() + std::size_t{L::kForce} * static_cast<std::size_t>(i - extra_begin);
@@ -82,9 +94,12 @@ struct ParticleStore {
   /// Makes room for so many rows of all that moves with a row, but for optional arrays.
   void resize_rows(std::size_t n);
   /// Makes room for all rows, waste rows set. @param rounder  what sums of forces start from
-  void resize_for_ghosts(double rounder = 0.0);
+  /// @param heat_rounder  what sums of heat flows start from
+  void resize_for_ghosts(double rounder = 0.0, double heat_rounder = 0.0);
   /// Forces of rows [begin, end) start from the rounder.
   void start_forces(double rounder, std::int32_t begin, std::int32_t end);
+  /// Heat flows of rows [begin, end) start from the rounder. @pre has_heat
+  void start_flows(double rounder, std::int32_t begin, std::int32_t end);
   /// Extra forces of rows [begin, end) are zero; those of other rows are gone.
   void start_extra(std::int32_t begin, std::int32_t end);
   /// Takes the rounder out of the forces of rows [begin, end).

@@ -31,6 +31,7 @@ void set_particle(ParticleStore<Dim>& store, std::int32_t row, const ParticleDat
   store.set_radius(row, p.radius);
   x[L::kInverseMass] = p.fixed ? 0.0 : 1.0 / mass_of(p, Dim);
   store.density[at] = p.density;
+  if (store.has_heat) *store.t(row) = p.temperature;
   store.id[at] = p.id;
   store.type[at] = static_cast<std::uint8_t>(p.type);
   store.flags[at] =
@@ -45,6 +46,7 @@ ParticleData particle_at(const ParticleStore<Dim>& store, std::int32_t row) {
   p.type = store.type[at];
   p.radius = store.radius(row);
   p.density = store.density[at];
+  if (store.has_heat) p.temperature = *store.t(row);
   p.fixed = (store.flags[at] & ParticleStore<Dim>::kFixed) != 0;
   for (int c = 0; c < Dim; ++c) {
     p.position[c] = store.x(row)[c];

@@ -21,7 +21,7 @@ class RowRecord {
       const auto& values = store.*array.values;
       const std::size_t begin = place(array, row);
       if (array.is_optional) has_optional_ = begin < values.size();
-      if (array.is_optional && has_optional_ == 0)
+      if ((array.is_optional && has_optional_ == 0) || (array.is_of_heat && !store.has_heat))
         std::memset(bytes_.data() + at, 0, bytes);
       else
         std::memcpy(bytes_.data() + at, values.data() + begin, bytes);
@@ -31,6 +31,7 @@ class RowRecord {
   /// Optional arrays grow to hold the row where it brings something.
   void put(Store& store, std::int32_t row) const {
     visit_places([&](const auto& array, std::size_t at, std::size_t bytes) {
+      if (array.is_of_heat && !store.has_heat) return;
       auto& values = store.*array.values;
       const std::size_t begin = place(array, row),
                         end = begin + static_cast<std::size_t>(array.width);

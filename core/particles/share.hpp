@@ -40,6 +40,8 @@ struct CheckpointShare {
   std::vector<double> densities;              ///< [kg/m³], 2D [kg/m²]
   std::vector<std::uint8_t> types, flags;
   std::vector<double> externals;  ///< force records, or none at all
+  /// [K]; none at all where heat is off. A temperature is the sum of the two (heat.hpp).
+  std::vector<double> temperatures, temperature_remainders;
 
   std::vector<std::int64_t> contact_ids;  ///< two each, of pairs whose history is not zero
   std::vector<double> contact_springs;    ///< histories, as seen from the first

@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -28,6 +30,7 @@ Json walls_of(const RunSummary& s) {
                      {"force", vector_of(state.force, s.dimension)},
                      {"torque", torque},
                      {"work", state.work}});
+    if (s.wall_specs[w].gives_heat()) walls.back()["heat_flow"] = state.heat_flow;
   }
   return walls;
 }
@@ -141,6 +144,12 @@ void add_further(const RunSummary& s, Json& json) {
                          {"contacts", s.left.links.contacts + s.left.links.wall_contacts},
                          {"bonds", s.left.links.bonds}};
   json["max_speed"] = s.measures.max_speed;
+  if (std::isfinite(s.measures.max_temperature)) {
+    json["heat"] = {{"total", s.measures.heat.value()},
+                    {"mean_temperature", s.measures.mean_temperature()},
+                    {"min_temperature", s.measures.min_temperature},
+                    {"max_temperature", s.measures.max_temperature}};
+  }
   json["momentum"] = momentum_of(s);
   json["bonds"] = s.measures.bonds;
   json["broken_bonds"] = s.measures.broken_bonds;

@@ -33,6 +33,13 @@ std::vector<std::string> columns_of(const Model& model, const std::vector<Ring>&
     columns.push_back(ring.name + "_diameter_x");
     columns.push_back(ring.name + "_diameter_y");
   }
+  if (model.heat.is_on) {
+    columns.insert(columns.end(),
+                   {"heat", "mean_temperature", "min_temperature", "max_temperature"});
+    for (std::size_t w = 0; w < model.walls.size(); ++w) {
+      if (model.walls[w].gives_heat()) columns.push_back(names[w] + "_heat_flow");
+    }
+  }
   if (model.output.energy) {
     columns.insert(columns.end(), {"wall_work", "gravity_work", "caller_work", "contact_loss",
                                    "bond_loss", "damping_loss", "departed_energy", "energy_error"});
@@ -56,6 +63,13 @@ Cells values_of(const Simulation& simulation, const Measures& m, const Cells& di
     for (int c = 0; c < model.dimension; ++c) values.emplace_back(walls[w].point[c]);
   }
   values.insert(values.end(), diameters.begin(), diameters.end());
+  if (model.heat.is_on) {
+    values.insert(values.end(),
+                  {m.heat.value(), m.mean_temperature(), m.min_temperature, m.max_temperature});
+    for (std::size_t w = 0; w < walls.size(); ++w) {
+      if (model.walls[w].gives_heat()) values.emplace_back(walls[w].heat_flow);
+    }
+  }
   if (model.output.energy) {
     const EnergyBudget b = simulation.energy_budget(m);
     values.insert(values.end(), {b.wall_work, b.gravity_work, b.caller_work, b.contact_loss,

@@ -52,7 +52,7 @@ void SnapshotWriter::resume(const Simulation& simulation, std::int64_t every) {
 void SnapshotWriter::write(Simulation& simulation) {
   const std::int64_t step = simulation.step();
   const std::string name = folder_ + "/" + piece_name(step, simulation.communicator().rank());
-  ParticleArrays particles;
+  ParticleArrays particles(simulation.model().heat.is_on);
   simulation.for_each_owned([&](const OwnedParticle& p) { particles.add(p); });
   const std::vector<std::int32_t> rank(static_cast<std::size_t>(simulation.num_owned()),
                                        simulation.communicator().rank());

@@ -80,7 +80,9 @@ std::vector<Scenario> restart_scenarios() {
           rolling_column(),
           sticky_gas(Adhesion::Sjkr2, true),
           sticky_gas(Adhesion::Bridge, false),
-          attracting_gas(true)};
+          attracting_gas(true),
+          with_heat(soil_with_ring_and_plate(), 400.0),
+          with_heat(attracting_gas(false), 200.0)};
 }
 
 class RestartOf : public testing::TestWithParam<int> {
@@ -133,7 +135,7 @@ TEST_P(RestartOf, GivesTheSameBitsOnAnyNumberOfRanksAndThreads) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenarios, RestartOf, testing::Range(0, 22));
+INSTANTIATE_TEST_SUITE_P(Scenarios, RestartOf, testing::Range(0, 24));
 
 /// Restarts from every step of a stretch, so from before, at and after rebuilds, with and without
 /// checks in flight.

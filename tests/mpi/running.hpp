@@ -92,6 +92,10 @@ inline Words words_of(Simulation& sim) {
     }
     add(w.work);
   }
+  if (sim.model().heat.is_on) {
+    for (const double value : {m.heat.value(), m.min_temperature, m.max_temperature}) add(value);
+    for (const WallState& w : sim.walls()) add(w.heat_flow);
+  }
   if (!sim.model().output.energy) return words;
   const EnergyBudget b = sim.energy_budget(m);
   for (const double value : {b.gravity_work, b.caller_work, b.contact_loss, b.bond_loss,

@@ -354,6 +354,24 @@ inline Scenario rolling_column() {
   return s;
 }
 
+/// Gives all of a scenario temperatures by their ids, and its walls one, a flux, or neither.
+inline Scenario with_heat(Scenario s, double conductivity) {
+  s.name += ", with heat";
+  s.num_steps /= 3;
+  s.model.heat.is_on = true;
+  for (std::size_t a = 0; a < s.model.materials.size(); ++a) {
+    s.model.materials[a].conductivity = conductivity * (1.0 + 0.5 * static_cast<double>(a));
+    s.model.materials[a].heat_capacity = 10.0 + 3.0 * static_cast<double>(a);
+  }
+  for (std::size_t w = 0; w < s.model.walls.size(); ++w) {
+    if (w % 3 == 0) s.model.walls[w].temperature = 350.0;
+    if (w % 3 == 1) s.model.walls[w].heat_flux = 1e3;
+  }
+  for (ParticleData& p : s.set.particles)
+    p.temperature = 290.0 + 17.0 * static_cast<double>(p.id % 7);
+  return s;
+}
+
 /// @param num_materials  5 materials make 15 laws and the null law, more than a vector register
 /// holds
 inline Scenario many_laws(int num_materials, bool no_tension) {

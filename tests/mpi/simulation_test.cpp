@@ -60,6 +60,11 @@ Outcome outcome_of(const Scenario& s, MPI_Comm comm, const RunOptions& options, 
       out.add(w.point[c]);
     }
     out.add(w.work);
+    out.add(w.heat_flow);
+  }
+  if (s.model.heat.is_on) {
+    for (const double value : {m.heat.value(), m.min_temperature, m.max_temperature})
+      out.add(value);
   }
   std::int64_t migrations = sim.timings().migrations;
   MPI_Allreduce(&migrations, &out.migrations, 1, MPI_INT64_T, MPI_SUM, comm);
@@ -301,6 +306,11 @@ TEST(SameBits, SpheresThatStick) {
 TEST(SameBits, SpheresThatHoldBeyondTouch) {
   (void)expect_same_bits(attracting_gas(false), 10);
   (void)expect_same_bits(sticky_gas(Adhesion::Bridge, true), 10);
+}
+
+TEST(SameBits, HeatThatFlowsAcrossCutsAndMovesWithItsParticles) {
+  (void)expect_same_bits(with_heat(plates_at_borders(), 400.0), 3);
+  (void)expect_same_bits(with_heat(attracting_gas(true), 200.0), 7);
 }
 
 TEST(SameBits, ElasticSpheresThatMeetAtCuts) {

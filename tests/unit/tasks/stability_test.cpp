@@ -179,5 +179,23 @@ TEST(CheckTimeStep, LetsAnUnstableStepPassWhereTheDeckAllowsIt) {
   EXPECT_NO_THROW(check_time_step(model, limits));
 }
 
+TEST(StepLimits, OfHeatAreTheCapacityOverAsManyContactsAsFit) {
+  Model model = model_of(1);
+  model.heat.is_on = true;
+  model.limits.overlap_error = 0.5;
+  model.materials[0].conductivity = 2.0;
+  model.materials[0].heat_capacity = 1e-6;
+  const ParticleSet set{{disk(1, 1, 0.1), disk(2, 2, 0.05)}, {}};
+
+  const auto limits = step_limits(model, set);
+
+  const double reduced = 1.0 / (1.0 / 0.05 + 1.0 / 0.1);
+  const double h = 2.0 * 2.0 * std::sqrt(reduced * 0.5 * 0.05) / 0.15;
+  EXPECT_NEAR(limit(limits, "heat in a") / (1e-6 * mass(0.05) / (6.0 * h)), 1.0, 1e-12);
+  EXPECT_EQ(limits.front().what, "heat in a");
+  model.time.step = 2.0 * limits.front().step;
+  EXPECT_THROW(check_time_step(model, limits), InputError);
+}
+
 }  // namespace
 }  // namespace barchan

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <set>
 #include <vector>
 
 #include <barchan/core/checkpoint/state.hpp>
@@ -9,7 +10,7 @@
 namespace barchan {
 namespace {
 
-enum Part { Space, Step, Gravity, Densities, Contacts, Bonds, Walls, Stages, kNumParts };
+enum Part { Space, Step, Gravity, Densities, Contacts, Bonds, Walls, Stages, Heat, kNumParts };
 
 Model some_model() {
   Model m;
@@ -86,6 +87,29 @@ TEST(Fingerprint, SeesEveryNumberOfWallsAndStages) {
                        [](Model& m) { m.stages[1].local_damping = 0.1; },
                        [](Model& m) { m.stages[0].max_time = 1.0; },
                        [](Model& m) { m.stages[0].kinetic_ratio = 0.1; }});
+}
+
+TEST(Fingerprint, SeesHeat) {
+  const auto warm = [](const std::function<void(Model&)>& change) {
+    return [change](Model& m) {
+      m.heat.is_on = true;
+      change(m);
+    };
+  };
+  const std::vector<Change> changes{warm([](Model&) {}),
+                                    warm([](Model& m) { m.heat.temperature = 1.0; }),
+                                    warm([](Model& m) { m.materials[0].conductivity = 1.0; }),
+                                    warm([](Model& m) { m.materials[0].heat_capacity = 1.0; }),
+                                    warm([](Model& m) { m.walls[0].temperature = 0.0; }),
+                                    warm([](Model& m) { m.walls[0].heat_flux = 1.0; })};
+  expect_seen(Heat, changes);
+  std::set<std::uint64_t> different;
+  for (const Change& change : changes) {
+    Model model = some_model();
+    change(model);
+    different.insert(fingerprint(model)[Heat]);
+  }
+  EXPECT_EQ(different.size(), changes.size());
 }
 
 TEST(Fingerprint, IsTheSameWhereARunMayGoOnDifferently) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <random>
@@ -146,6 +147,24 @@ TEST(ParticleFiles, ComeBackBitForBit) {
   for (std::size_t i = 0; i < particles.size(); ++i) {
     expect_same(from_csv.particles[i], particles[i]);
     expect_same(from_vtp.particles[i], particles[i]);
+  }
+}
+
+TEST(ParticleFiles, BringTemperaturesBackWhereThereAreAny) {
+  std::vector<ParticleData> particles = some_particles();
+  const std::string csv = temporary("warm.csv"), vtp = temporary("warm.vtp");
+  write_particles_csv(csv, particles);
+  EXPECT_EQ(read_text_file(csv).find("temperature"), std::string::npos);
+  EXPECT_TRUE(std::isnan(read_particles(csv).particles[0].temperature));
+  for (ParticleData& p : particles) p.temperature = 300.0 + 1.0 / static_cast<double>(p.id);
+
+  write_particles_csv(csv, particles);
+  write_particles_vtp(vtp, particles);
+
+  for (const std::string& path : {csv, vtp}) {
+    const ParticleFile file = read_particles(path);
+    for (std::size_t p = 0; p < particles.size(); ++p)
+      EXPECT_EQ(file.particles[p].temperature, particles[p].temperature) << path;
   }
 }
 

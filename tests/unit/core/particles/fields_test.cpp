@@ -52,6 +52,7 @@ void expect_fields_apart() {
   std::set<const void*> places;
   ParticleStore<Dim> store;
   store.num_owned = 1;
+  store.has_heat = true;
   store.resize_for_ghosts();
   store.external.assign(Layout<Dim>::kForce, 0.0);
   int numbers = 0;
