@@ -1,5 +1,5 @@
-# Arithmetic that gives the same bits in every translation unit. Public, because an inline function of a
-# header may be compiled by a user with wider vectors on, and the linker keeps any one copy of it.
+# Arithmetic that gives the same bits in every translation unit. For all that is linked with the static layers, because
+# the linker keeps any one copy of an inline function; programs of others get a shared library (SharedLibrary.cmake).
 # -fno-tree-slp-vectorize: GCC 12 at -O3 -march=native emits vfmaddsub there in spite of -ffp-contract=off.
 add_library(barchan_arithmetic INTERFACE)
 target_compile_options(barchan_arithmetic INTERFACE -ffp-contract=off -fno-tree-slp-vectorize)

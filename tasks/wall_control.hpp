@@ -23,11 +23,11 @@ class WallControl {
   /// Puts it elsewhere at once, without a velocity; contacts keep their springs. Collective; the
   /// same on every rank.
   /// @param point   of the wall [m]
-  /// @param normal  of any length; the default: as it is
+  /// @param normal  of any length
   /// Errors: InputError, and nothing is changed: a particle would reach into the wall by more than
   /// half of its radius, a normal of length 0, or one that this domain cannot have
-  void set_pose(const Vec3& point);
   void set_pose(const Vec3& point, const Vec3& normal);
+  void set_pose(const Vec3& point);  ///< the same, with its normal as it is
 
  private:
   friend class Simulation;

@@ -3,7 +3,7 @@
 set -eu
 [[ $PWD != "$BARCHAN_SOURCE" ]] || { echo "run this in a folder of its own"; exit 1; }
 work=$PWD
-rm -rf "$work"/staged "$work"/installed "$work"/embed "$work"/embed_build
+rm -rf "$work"/staged "$work"/installed "$work"/embed "$work"/embed_build "$work"/bits "$work"/bits_build
 
 cmake --install "$BARCHAN_BUILD" --prefix "$work/staged" > install.log
 mv staged installed
@@ -11,6 +11,9 @@ for path in bin/barchan bin/barchan-netlab libexec/barchan/netlab/netlab_forward
   share/barchan/deck.schema.json \
   include/barchan/core/base/vec.hpp share/barchan/examples/embed/CMakeLists.txt; do
   [[ -e installed/$path ]] || { echo "not installed: $path"; exit 1; }
+done
+for private in tasks/engine.hpp core/brick/brick.hpp core/kernels/pair_loop.hpp; do
+  [[ ! -e installed/include/barchan/$private ]] || { echo "a private header is installed: $private"; exit 1; }
 done
 [[ -L installed/include/barchan/core ]] && { echo "headers are installed as links"; exit 1; }
 installed/bin/barchan --version
@@ -25,6 +28,29 @@ if grep -E "$BARCHAN_SOURCE/(core|comm|tasks|include)|$BARCHAN_BUILD/(include|li
   exit 1
 fi
 mpirun -n 2 embed_build/embed
+if grep -qE 'ffp-contract|tree-slp' embed_build/compile_commands.json; then
+  echo "flags of barchan's reach the program"
+  exit 1
+fi
+# Flags of the program's own leave barchan's bits alone, also where both have compiled an inline function.
+mkdir -p bits
+cat > bits/CMakeLists.txt <<EOF
+cmake_minimum_required(VERSION 3.24)
+project(bits LANGUAGES CXX)
+find_package(barchan REQUIRED)
+add_executable(bits $BARCHAN_SOURCE/tests/install/bits.cpp)
+target_link_libraries(bits PRIVATE barchan::barchan)
+target_compile_options(bits PRIVATE -O1 -march=native -ffast-math -fno-inline)
+target_link_options(bits PRIVATE -ffast-math)
+EOF
+cmake -S bits -B bits_build -G Ninja -DCMAKE_CXX_FLAGS="${CXXFLAGS:-}" -DCMAKE_PREFIX_PATH="$work/installed" > bits.log
+cmake --build bits_build >> bits.log
+installed/bin/barchan run "$BARCHAN_SOURCE/tests/install/abi.toml" --quiet --out bits.out --force --set time.end=0.06
+digest=$(mpirun -n 2 bits_build/bits "$BARCHAN_SOURCE/tests/install/abi.toml")
+grep -q "\"state_digest\": \"$digest\"" bits.out/run.json ||
+  { echo "flags of a program have changed bits: $digest instead of $(grep state_digest bits.out/run.json)"; exit 1; }
+loose=$(readelf -rW installed/lib*/libbarchan_cpp.so | grep JUMP_SLO | grep -c 7barchan || true)
+[[ $loose == 0 ]] || { echo "libbarchan_cpp.so calls $loose functions of its own that a program may replace"; exit 1; }
 
 grep -q '^BARCHAN_BUILD_BINDINGS:BOOL=ON' "$BARCHAN_BUILD/CMakeCache.txt" || exit 0  # as with sanitizers
 
