@@ -147,8 +147,7 @@ void print_cuts(const LoadedDeck& loaded, int wanted) {
   }
   Rows rows{{"ranks", "cut into", "particles a rank", "largest / mean", "memory a rank"}};
   for (const int p : ranks) {
-    const bool is_strips = request.wish.kind == CutWish::Kind::Strips;
-    if (wanted == 0 && p > (is_strips ? plan.room.most_strips() : most_bricks)) break;
+    if (wanted == 0 && !fits_somehow(p, request.wish.kind, plan.room)) continue;
     request.ranks = p;
     rows.push_back(row_of_ranks(plan, choose_cuts(request, plan.room), bytes, all));
   }

@@ -91,6 +91,15 @@ Shape in_grid_order(const Shape& xyz, const CutRoom& room) {
   return shape;
 }
 
+/// Up to as many as were asked for; 0: not even one fits.
+int most_ranks_as_bricks(int ranks, const CutRoom& room) {
+  while (ranks > 0 &&
+         best_bricks({{}, ranks, 1, false, {}}, room, products(ranks, room.dimension)).step ==
+             kDoesNotFit)
+    --ranks;
+  return ranks;
+}
+
 /// What a user may do instead.
 std::string remedy(const CutRequest& request, const CutRoom& room) {
   const Choice bricks =
@@ -98,7 +107,9 @@ std::string remedy(const CutRequest& request, const CutRoom& room) {
   if (bricks.step < kDoesNotFit && !request.needs_strips)
     return fmt::format("for {} ranks cuts = {} would fit, or \"auto\"", request.ranks,
                        in_words(along_xyz(bricks.shape.ranks, room), room.dimension));
-  const int most = room.most_strips();
+  const bool may_be_bricks = !request.needs_strips && request.wish.kind == CutWish::Kind::Auto;
+  const int most =
+      std::max(room.most_strips(), may_be_bricks ? most_ranks_as_bricks(request.ranks, room) : 0);
   if (request.needs_strips && request.ranks <= most)
     return "use cuts = \"strips\", or another exchange";
   return fmt::format("use at most {} rank{}{}", most, most == 1 ? "" : "s",
@@ -187,6 +198,11 @@ double predicted_step(const CutShape& shape, const CutRoom& room) {
          kHandOver * (beside - 1.0 - remote);
 }
 
+bool fits_somehow(int ranks, CutWish::Kind kind, const CutRoom& room) {
+  if (ranks <= room.most_strips()) return true;
+  return kind != CutWish::Kind::Strips && most_ranks_as_bricks(ranks, room) == ranks;
+}
+
 CutShape choose_cuts(const CutRequest& request, const CutRoom& room) {
   if (request.wish.kind == CutWish::Kind::Bricks) return as_asked(request, room);
   const Choice strips = best_strips(request, room);
@@ -201,9 +217,8 @@ CutShape choose_cuts(const CutRequest& request, const CutRoom& room) {
   const Choice bricks = best_bricks(request, room, products(request.ranks, room.dimension));
   if (strips.step == kDoesNotFit && bricks.step == kDoesNotFit)
     refuse(request, room,
-           fmt::format("{} ranks for a domain of {} x {} x {} cells", request.ranks,
-                       along_xyz(room.cells, room)[0], along_xyz(room.cells, room)[1],
-                       along_xyz(room.cells, room)[2]));
+           fmt::format("{} ranks for a domain of {} cells", request.ranks,
+                       describe({CutForm::Bricks, room.cells, {1, 1, 1}}, room)));
   return bricks.step < kClearlyBetter * strips.step ? bricks.shape : strips.shape;
 }
 

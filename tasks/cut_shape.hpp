@@ -39,6 +39,9 @@ struct CutRequest {
   SourcePlace place;           ///< of the domain, in the deck
 };
 
+/// Whether so many ranks fit as bricks of any shape, or as strips. Pure.
+[[nodiscard]] bool fits_somehow(int ranks, CutWish::Kind kind, const CutRoom& room);
+
 /// How ranks and their lanes are cut: as asked for, or in the way with the smallest predicted step;
 /// bricks only where they are clearly better than strips. Pure.
 /// Errors: InputError, with what would fit.

@@ -69,7 +69,7 @@ class Events {
     } else if (kind == "s" || kind == "f") {
       const std::string id = event.at("id");
       Message& message = messages[id];
-      message.step = std::strtoll(id.c_str() + id.find_first_not_of("0123456789") + 1, nullptr, 10);
+      message.step = std::strtoll(id.c_str() + id.rfind('.') + 1, nullptr, 10);  // sender.link.step
       (kind == "s" ? message.sent : message.noticed) = {rank, event.at("tid"), event.at("ts")};
     }
   }

@@ -17,6 +17,7 @@ std::uint64_t particle_digest(std::int64_t id, std::span<const double> position,
   std::array<std::byte, 8 * 12> bytes{};
   std::size_t used = 0;
   const auto put = [&](const void* from, std::size_t count) {
+    if (count == 0) return;  // of nothing there may be no address
     std::memcpy(bytes.data() + used, from, count);
     used += count;
   };

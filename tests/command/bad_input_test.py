@@ -106,11 +106,11 @@ def check_ranks():
                                 ("radius = 0.04", "radius = 0.12")))
     told = run("check", "narrow.toml")
     expect(told.returncode == 0, f"check: {told.stderr}")
-    most = int(told.stdout.split("at most ")[1].split()[0])
-    refused("more ranks than strips", run("run", "narrow.toml", "--quiet", ranks=most + 1),
+    most = int(told.stdout.split("fit as strips, ")[1].split()[0])
+    refused("more ranks than bricks", run("run", "narrow.toml", "--quiet", ranks=most + 1),
             [f"{most + 1} ranks", f"at most {most}"])
-    expect(not os.path.exists("narrow.out"), "more ranks than strips: an output folder is left")
-    refused("check of more ranks than strips", run_check_ranks(most + 1), [f"at most {most}"])
+    expect(not os.path.exists("narrow.out"), "more ranks than bricks: an output folder is left")
+    refused("check of more ranks than bricks", run_check_ranks(most + 1), [f"at most {most}"])
 
 
 def run_check_ranks(ranks):

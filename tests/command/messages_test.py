@@ -54,9 +54,9 @@ def check_places():
     narrow = edited(("hi = [4.0, 1.0]", 'hi = [4.0, 1.0]\nperiodic = ["x"]'), ("hi = [4.0, 1.0]", "hi = [0.12, 1.0]"),
                     ("hi = [4.0, 0.8]", "hi = [0.12, 0.8]"))
     refused("narrow period", narrow, [f"wrong.toml:{line_of(narrow, '[domain]')}:", "along x", "at least"])
-    few = edited(("hi = [4.0, 1.0]", "hi = [0.3, 1.0]\nstrip_axis = \"x\""), ("hi = [4.0, 0.8]", "hi = [0.3, 0.8]"))
+    few = edited(("hi = [4.0, 1.0]", 'hi = [0.3, 1.0]\nstrip_axis = "x"\ncuts = "strips"'), ("hi = [4.0, 0.8]", "hi = [0.3, 0.8]"))
     write("few.toml", few)
-    place = f"few.toml:{line_of(few, '[domain]')}:"
+    place = f"few.toml:{line_of(few, 'cuts')}:"
     for done in (run("run", "few.toml", "--quiet", ranks=3), run("check", "few.toml", "--ranks", 3)):
         said = "".join(messages(done))
         expect(done.returncode == 2 and place in said and "3 ranks" in said, f"too many ranks: {said}")
