@@ -23,12 +23,12 @@ void StepClock::band(int lane, Side side, int step, std::int64_t begin, std::int
                 end, step);
 }
 
-void StepClock::sent(int link, std::int64_t begin, std::int64_t end, std::int64_t in_exchange) {
+void StepClock::sent(int link, const Sending& times, std::int64_t in_exchange) {
   send_ += in_exchange;
-  if (next_sent_at_ == 0) next_sent_at_ = end - in_exchange;
+  if (next_sent_at_ == 0) next_sent_at_ = times.handed_over;
   if (trace_ == nullptr) return;
-  trace_->slice(Trace::Slice::Send, link, begin, end);
-  trace_->sent(link, trace_->step() + 1, end - in_exchange);
+  trace_->slice(Trace::Slice::Send, link, times.begin, times.end);
+  trace_->sent(link, trace_->step() + 1, times.handed_over);
 }
 
 void StepClock::polled(std::int64_t begin, std::span<const int> found) {

@@ -42,8 +42,11 @@ class StepClock {
   void band(int lane, Side side, int step, std::int64_t begin, std::int64_t end);
 
   // ---- by who holds the exchange
+  struct Sending {
+    std::int64_t begin, handed_over, end;  ///< handed over: to the exchange, packed
+  };
   /// @param in_exchange  of the time from begin to end [ns]; the rest is packing
-  void sent(int link, std::int64_t begin, std::int64_t end, std::int64_t in_exchange);
+  void sent(int link, const Sending& times, std::int64_t in_exchange);
   /// @param found  the links whose halo it found
   void polled(std::int64_t begin, std::span<const int> found);
   /// @param posted  when the neighbour sent it; 0: not known. @param is_last  all halos are in now

@@ -144,7 +144,8 @@ void StepGraph<Dim>::send(int l, Side side) {
     if (shape_.sending_band(to) != side) continue;
     const std::int64_t in_exchange = strip_.send_ns(), begin = now_ns();
     strip_.send_halo(l, tie);
-    if (to.link >= 0) clock_.sent(to.link, begin, now_ns(), strip_.send_ns() - in_exchange);
+    if (to.link < 0) continue;
+    clock_.sent(to.link, {begin, strip_.sent_at(), now_ns()}, strip_.send_ns() - in_exchange);
   }
 }
 

@@ -120,9 +120,9 @@ void Strip<Dim>::send(int link, std::size_t bytes, Pack&& pack) {
   const auto message = exchange_->outgoing(link, bytes);
   const std::int64_t packing = now_ns();
   pack(message);
-  const std::int64_t packed = now_ns();
+  sent_at_ = now_ns();
   exchange_->send(link);
-  send_ns_ += (packing - begin) + (now_ns() - packed);
+  send_ns_ += (packing - begin) + (now_ns() - sent_at_);
 }
 
 template <int Dim>

@@ -103,6 +103,8 @@ class Strip {
   void set_exchange(std::unique_ptr<Exchange> exchange);
   /// In the exchange, sending halos.
   [[nodiscard]] std::int64_t send_ns() const { return send_ns_; }
+  /// When the last message was handed to the exchange: nobody notices it earlier.
+  [[nodiscard]] std::int64_t sent_at() const { return sent_at_; }
   void set_trace(Trace* trace) { trace_ = trace; }
   [[nodiscard]] Trace* trace() const { return trace_; }
   [[nodiscard]] std::int64_t num_owned() const;
@@ -154,7 +156,7 @@ class Strip {
   std::vector<bool> shares_clock_;  ///< by link
   std::vector<bool> awaited_;       ///< by link: a message of another rank is due in this step
   std::int64_t halo_step_ = 0;      ///< that the halo on its way is for
-  std::int64_t send_ns_ = 0;
+  std::int64_t send_ns_ = 0, sent_at_ = 0;
   Trace* trace_ = nullptr;
 };
 
