@@ -141,7 +141,7 @@ void add_others(CLI::App& root, CommandLine& line) {
       ->required()
       ->type_name("DECK")
       ->check(not_empty());
-  check.add_option("--ranks", line.check.ranks, "Show the strips for this number of ranks")
+  check.add_option("--ranks", line.check.ranks, "Show the cuts for this number of ranks")
       ->type_name("P")
       ->transform(whole_number())
       ->check(CLI::Range(1, 1 << 20));

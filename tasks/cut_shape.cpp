@@ -91,19 +91,20 @@ Shape in_grid_order(const Shape& xyz, const CutRoom& room) {
   return shape;
 }
 
+/// In any shape, of one thread a rank.
+Choice as_bricks(int ranks, const CutRoom& room) {
+  return best_bricks({{}, ranks, 1, false, {}}, room, products(ranks, room.dimension));
+}
+
 /// Up to as many as were asked for; 0: not even one fits.
 int most_ranks_as_bricks(int ranks, const CutRoom& room) {
-  while (ranks > 0 &&
-         best_bricks({{}, ranks, 1, false, {}}, room, products(ranks, room.dimension)).step ==
-             kDoesNotFit)
-    --ranks;
+  while (ranks > 0 && as_bricks(ranks, room).step == kDoesNotFit) --ranks;
   return ranks;
 }
 
 /// What a user may do instead.
 std::string remedy(const CutRequest& request, const CutRoom& room) {
-  const Choice bricks =
-      best_bricks({{}, request.ranks, 1, false, {}}, room, products(request.ranks, room.dimension));
+  const Choice bricks = as_bricks(request.ranks, room);
   if (bricks.step < kDoesNotFit && !request.needs_strips)
     return fmt::format("for {} ranks cuts = {} would fit, or \"auto\"", request.ranks,
                        in_words(along_xyz(bricks.shape.ranks, room), room.dimension));
@@ -125,8 +126,9 @@ CutShape as_asked(const CutRequest& request, const CutRoom& room) {
   const Shape& xyz = request.wish.bricks;
   const std::string words = in_words(xyz, room.dimension);
   if (room.dimension == 2 && xyz[2] != 1)
-    refuse(request, room, fmt::format("cuts along z, {}, of a run in two dimensions", xyz[2]));
-  const int product = xyz[0] * xyz[1] * xyz[2];
+    refuse(request, room,
+           fmt::format("cuts ask for {} bricks along z, but the run has two dimensions", xyz[2]));
+  const std::int64_t product = std::int64_t{xyz[0]} * xyz[1] * xyz[2];
   if (product != request.ranks)
     refuse(request, room,
            fmt::format("cuts = {} make {} brick{} for {} rank{}", words, product,
@@ -184,14 +186,11 @@ double predicted_step(const CutShape& shape, const CutRoom& room) {
   for (std::size_t k = 0; k < 3; ++k) {
     const int along = shape.along(static_cast<int>(k));
     const int thick = (room.num_filled(k) + along - 1) / along;
-    const auto neighbours = [&](int n, bool is_ring) {
-      return std::min(n - 1, is_ring || n > 2 ? 2 : 1);
-    };
     const int cuts = along == 1 ? 0 : (along == 2 && !room.is_periodic[k] ? 1 : 2);
     own *= thick;
     with_ghosts *= thick + cuts;
-    beside *= 1 + neighbours(along, room.is_periodic[k]);
-    beside_in_rank *= 1 + neighbours(shape.lanes[k], false);
+    beside *= 1 + std::min(along - 1, 2);
+    beside_in_rank *= 1 + std::min(shape.lanes[k] - 1, 2);
   }
   const double remote = shape.num_ranks() == 1 ? 0.0 : std::max(0.0, beside - beside_in_rank);
   return per_cell * (own + kGhost * (with_ghosts - own)) + kMessage * remote +
@@ -200,7 +199,7 @@ double predicted_step(const CutShape& shape, const CutRoom& room) {
 
 bool fits_somehow(int ranks, CutWish::Kind kind, const CutRoom& room) {
   if (ranks <= room.most_strips()) return true;
-  return kind != CutWish::Kind::Strips && most_ranks_as_bricks(ranks, room) == ranks;
+  return kind != CutWish::Kind::Strips && as_bricks(ranks, room).step < kDoesNotFit;
 }
 
 CutShape choose_cuts(const CutRequest& request, const CutRoom& room) {
@@ -244,7 +243,7 @@ CutWish parse_cuts(const std::string& text) {
   const char* const end = at + text.size();
   for (std::size_t k = 0; k < 3 && at != end; ++k) {
     const auto [next, error] = std::from_chars(at, end, wish.bricks[k]);
-    if (error != std::errc() || wish.bricks[k] < 1) break;
+    if (error != std::errc() || wish.bricks[k] < 1 || wish.bricks[k] > CutWish::kMost) break;
     at = next;
     if (at != end && (*at == ',' || *at == 'x')) ++at;
   }

@@ -126,6 +126,7 @@ void Simulation::EngineOf<Dim>::add(const ParticleSet& newcomers) {
   schedule_.amend(step_, count, speed);
   parts_.rebuild.take_in(newcomers.particles);
   renew_lists();
+  if (!parts_.world.accounts) return;
   for (const ParticleData& p : newcomers.particles) {
     const ParticlePlace place = index().find(std::span(&p.id, 1)).first;
     book_kinetic(std::span(&place, 1), 1.0);

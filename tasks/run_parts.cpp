@@ -15,7 +15,7 @@ World<Dim> world_for(const RunOptions& options, const Model& model, const WorldS
   return world;
 }
 
-/// An unknown exchange is told before cuts that do not fit.
+/// An unknown exchange is reported first, then cuts that do not fit.
 template <int Dim>
 LaneMap lanes_for(const RunOptions& options, const Communicator& ranks, const Model& model,
                   const World<Dim>& world) {

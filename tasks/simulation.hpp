@@ -110,7 +110,8 @@ class Simulation {
   /// rank. @return steps done
   /// The state is the same to the bit for the same times on any ranks; a shorter step is a step
   /// like others, so it is another state than without (docs/library.md).
-  /// Errors: std::invalid_argument: `time` has passed, or is none
+  /// Errors: std::invalid_argument: `time` has passed. InputError: ranks give different times, or
+  /// one that is not finite
   std::int64_t advance_to(double time);
   /// The length of steps from now on [s]. Collective; the same on every rank.
   /// Errors: InputError, and nothing is changed: not above 0, or unstable

@@ -19,13 +19,13 @@
 namespace barchan {
 
 std::int64_t Simulation::advance_to(double time) {
+  require_same(between_steps("advance_to").communicator_, "advance_to", Vec3(time, 0.0, 0.0));
   constexpr double kSame = 1e-6;  // share of a step
   const double dt = engine().model_.time.step;
   const double steps = (time - this->time()) / dt, whole = std::floor(steps + kSame);
   if (!(whole >= 0.0 && whole < 9e15))
     throw std::invalid_argument(
         fmt::format("Simulation::advance_to: {} s, where the run is at {} s", time, this->time()));
-  require_same(between_steps("advance_to").communicator_, "advance_to", Vec3(time, 0.0, 0.0));
   const std::int64_t done = run(static_cast<std::int64_t>(whole));
   if (done < static_cast<std::int64_t>(whole) || steps - whole <= kSame) return done;
   return done + between_steps("advance_to").run_short(time);
@@ -129,14 +129,14 @@ void Simulation::set_gravity(const Vec3& gravity) {
 
 namespace {
 
-int material_of(const Model& model, const std::string& name) {
+int material_of(const Model& model, const char* call, const std::string& name) {
   std::vector<std::string> names;
   for (std::size_t m = 0; m < model.materials.size(); ++m) {
     if (model.materials[m].name == name) return static_cast<int>(m);
     names.push_back("'" + model.materials[m].name + "'");
   }
   throw std::invalid_argument(
-      fmt::format("Simulation::set_contact: no material is called '{}': there are {}", name,
+      fmt::format("Simulation::{}: no material is called '{}': there are {}", call, name,
                   fmt::join(names, ", ")));
 }
 
@@ -144,15 +144,15 @@ int material_of(const Model& model, const std::string& name) {
 
 const ContactConstants& Simulation::contact(const std::string& a, const std::string& b) const {
   const Model& m = model();
-  return m.contacts.at(material_of(m, a), material_of(m, b));
+  return m.contacts.at(material_of(m, "contact", a), material_of(m, "contact", b));
 }
 
 void Simulation::set_contact(const std::string& a, const std::string& b,
                              const ContactConstants& constants) {
   Engine& engine = between_steps("set_contact");
   const Model& model = engine.model_;
-  const auto first = static_cast<std::size_t>(material_of(model, a)),
-             second = static_cast<std::size_t>(material_of(model, b));
+  const auto first = static_cast<std::size_t>(material_of(model, "set_contact", a)),
+             second = static_cast<std::size_t>(material_of(model, "set_contact", b));
   ContactTable table = model.contacts;
   const auto n = static_cast<std::size_t>(table.num_materials);
   table.constants[first * n + second] = table.constants[second * n + first] = constants;

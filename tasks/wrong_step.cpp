@@ -74,27 +74,27 @@ template <int Dim>
                         "time.step, more damping or less overlap would help"));
 }
 
-/// The strongest force is told first, and nothing else: what is near depends on the cuts.
-[[noreturn]] void report_overload(const ForceGrain& grain, double force, std::int64_t step) {
-  throw StepError(
-      {step, Overloaded, -std::bit_cast<std::int64_t>(force), 0},
-      fmt::format(
-          "in step {} the contacts of one particle press with {:.4g} N in all; sums of forces are "
-          "exact up to {:.4g} N, which follows from limits.overlap_error; less overlap at the "
-          "start or a smaller time.step would help, or a larger limits.overlap_error; a lower "
-          "limits.overlap_warning says earlier where overlaps are large",
-          step, force, grain.most()));
+/// The largest is told first, and nothing else: what is near depends on the cuts.
+StepError of_largest(Kind kind, double size, std::int64_t step, const std::string& text) {
+  return StepError({step, kind, -std::bit_cast<std::int64_t>(size), 0}, text);
 }
 
-[[noreturn]] void report_heat(const ForceGrain& grain, double flow, std::int64_t step) {
-  throw StepError(
-      {step, Hot, -std::bit_cast<std::int64_t>(flow), 0},
-      fmt::format(
-          "in step {} {:.4g} W flow through the contacts of one particle; sums of flows are "
-          "exact up to {:.4g} W, which follows from limits.overlap_error, the temperatures "
-          "of the start and of walls, and heat_flux until time.end; a larger "
-          "limits.overlap_error or a later time.end would help",
-          step, flow, grain.most()));
+std::string overload_text(const ForceGrain& grain, double force, std::int64_t step) {
+  return fmt::format(
+      "in step {} the contacts of one particle press with {:.4g} N in all; sums of forces are "
+      "exact up to {:.4g} N, which follows from limits.overlap_error; less overlap at the "
+      "start or a smaller time.step would help, or a larger limits.overlap_error; a lower "
+      "limits.overlap_warning says earlier where overlaps are large",
+      step, force, grain.most());
+}
+
+std::string heat_text(const ForceGrain& grain, double flow, std::int64_t step) {
+  return fmt::format(
+      "in step {} {:.4g} W flow through the contacts of one particle; sums of flows are "
+      "exact up to {:.4g} W, which follows from limits.overlap_error, the temperatures "
+      "of the start and of walls, and heat_flux until time.end; a larger "
+      "limits.overlap_error or a later time.end would help",
+      step, flow, grain.most());
 }
 
 template <int Dim>
@@ -131,8 +131,9 @@ void report_wrong_step(const RunParts<Dim>& run, const StepGraph<Dim>& graph, in
   }
   if (passage.exists()) report_passage(run, passage, step);
   if (fast != nullptr) report_fast(run, *fast, step);
-  if (force > 0.0) report_overload(run.world.grain, force, step);
-  report_heat(run.world.heat.grain, flow, step);
+  if (force > 0.0)
+    throw of_largest(Overloaded, force, step, overload_text(run.world.grain, force, step));
+  throw of_largest(Hot, flow, step, heat_text(run.world.heat.grain, flow, step));
 }
 
 template int wrong_step(const Strip<2>&, const StepGraph<2>&);

@@ -1,10 +1,12 @@
 // What callers change, by barchan.h: loads, fields by id, particles, walls, states.
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <memory>
 #include <span>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <barchan/core/deck/overrides.hpp>
@@ -122,14 +124,11 @@ int barchan_set_contact(barchan_sim* sim, const char* a, const char* b, const ch
     for (std::string line; std::getline(lines, line);) {
       if (line.empty()) continue;
       const barchan::DeckOverride number = barchan::parse_override(line);
-      std::size_t end = 0;
+      const char* const end = number.value.data() + number.value.size();
       double value = 0.0;
-      try {
-        value = std::stod(number.value, &end);
-      } catch (const std::exception&) {
-        end = 0;
-      }
-      require(end > 0 && end == number.value.size(), "barchan_set_contact: a value is no number");
+      const auto read = std::from_chars(number.value.data(), end, value);
+      require(read.ec == std::errc() && read.ptr == end,
+              "barchan_set_contact: a value is no number");
       barchan::set_number(s.model().contacts, pair, number.key, value);
     }
     s.set_contact(a, b, pair);

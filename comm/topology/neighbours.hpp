@@ -18,12 +18,6 @@ struct Neighbours {
   [[nodiscard]] int rank(int link) const { return links[static_cast<std::size_t>(link)].rank; }
   [[nodiscard]] int peer(int link) const { return links[static_cast<std::size_t>(link)].peer; }
   [[nodiscard]] bool has(int link) const { return link < num_links() && rank(link) >= 0; }
-  [[nodiscard]] bool has_any() const {
-    for (int link = 0; link < num_links(); ++link) {
-      if (has(link)) return true;
-    }
-    return false;
-  }
 };
 
 /// The links of a strip.

@@ -5,6 +5,7 @@
 
 #include <barchan/core/base/bytes.hpp>
 #include <barchan/core/base/error.hpp>
+#include <barchan/core/brick/cell_order.hpp>
 #include <barchan/core/brick/measure.hpp>
 #include <barchan/core/brick/step.hpp>
 #include <barchan/core/particles/row_order.hpp>
@@ -187,6 +188,34 @@ void Rebuild<Dim>::take_in(std::span<const ParticleData> newcomers) {
     grid.wrap(store.x(row));
     store.key[static_cast<std::size_t>(row)] = grid.key(store.x(row));
   }
+}
+
+template <int Dim>
+void Rebuild<Dim>::order() {
+  const World<Dim>& world = *brick_.world;
+  ParticleStore<Dim>& store = brick_.store;
+  constexpr auto kForce = std::size_t{Layout<Dim>::kForce};
+  CellOrder ordered = order_by_cells(brick_, leavers_.way);
+  const auto stays = static_cast<std::size_t>(ordered.num_owned);
+  if (!store.external.empty()) store.external.resize(ordered.source.size() * kForce, 0.0);
+  store.num_owned = ordered.num_owned;
+  brick_.num_rim = ordered.num_rim;
+  new_row_ = std::move(ordered.new_row);
+  move_rows(store, ordered.source);
+  if (!store.external.empty()) store.external.resize(stays * kForce);
+  store.num_ghosts = {};
+  store.resize_for_ghosts(world.grain.rounder(), world.heat.grain.rounder());
+  brick_.cells.cover(world.grid, brick_.box, store.num_owned);
+  brick_.cells.add(world.grid, store, {0, store.num_owned});
+  place_bands(brick_);
+  find_runs(brick_);
+  resize_with_room(store.reference, stays * Dim);
+  double* reference = store.reference.data();
+  for (std::int32_t i = 0; i < store.num_owned; ++i) {
+    for (int c = 0; c < Dim; ++c) *reference++ = store.x(i)[c];
+  }
+  brick_.skin = world.skin;
+  lists_.list_bonded();
 }
 
 template <int Dim>

@@ -62,22 +62,13 @@ class Rebuild {
   void find_leavers(std::vector<Migration<Dim>>& out);
   void collect_bonds(std::vector<Migration<Dim>>& out);
   [[nodiscard]] bool computes_bond(std::int32_t bond) const;
-  /// By cell of the box: its place among the cells, in the order of rows.
-  std::vector<std::int32_t> places_of_cells();
-  std::vector<std::int32_t> places_in_box();
-  std::vector<std::int32_t> places_among_filled();
-  [[nodiscard]] bool is_rim(std::int64_t key) const;
-  std::vector<std::int32_t> sources();
-  void place_bands();
-  void find_runs();
 
   Brick<Dim>& brick_;
   Lists<Dim>& lists_;
   HistoryCarry<Dim> carry_;
   // between begin and restore_history
-  Leavers leavers_;                                 ///< by source row: this brick's, then arrivals
-  std::vector<std::int32_t> new_row_;               ///< of every source row; -1: left
-  std::int32_t num_cells_ = 0, num_rim_cells_ = 0;  ///< of the order
+  Leavers leavers_;                    ///< by source row: this brick's, then arrivals
+  std::vector<std::int32_t> new_row_;  ///< of every source row; -1: left
 };
 
 extern template class Rebuild<2>;

@@ -68,7 +68,7 @@ constexpr Group kGroups[] = {
      {"any law of contact but linear springs and Hertz–Mindlin is",
       "choose one of these by `model` in [contact]"}},
     {kHeat,
-     {"heat but by conductivity and heat_capacity of materials is",
+     {"heat other than conduction through contacts is",
       "leave it out; with a table [heat] these two let it flow through contacts"}},
     {kViscous,
      {"viscosity is",

@@ -18,8 +18,8 @@ std::optional<double> heat_number(const TableReader& table, std::string_view key
                                   const Model& model) {
   const auto number = table.optional_number(key);
   if (number && !model.heat.is_on)
-    table.fail(key, fmt::format("{} has no place where heat does not flow", key),
-               "add a table [heat], which gives particles temperatures, or leave it out");
+    table.fail(key, fmt::format("{} is given, but the deck has no table [heat]", key),
+               fmt::format("add [heat], which gives particles temperatures, or leave {} out", key));
   return number;
 }
 

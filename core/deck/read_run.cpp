@@ -61,9 +61,8 @@ CutWish read_cuts(const TableReader& table) {
   if (value->kind != Node::Kind::Array || value->items.size() != num_axes)
     table.fail("cuts", fmt::format("cuts: expected a word or {} integers", num_axes), remedy);
   for (std::size_t axis = 0; axis < num_axes; ++axis) {
-    constexpr std::int64_t kMost = 1 << 20;
     const std::int64_t bricks = whole_number(value->items[axis], "cuts");
-    if (bricks < 1 || bricks > kMost)
+    if (bricks < 1 || bricks > CutWish::kMost)
       table.fail("cuts", fmt::format("cuts: {} bricks along {}", bricks, kAxisNames[axis]), remedy);
     wish.bricks[axis] = static_cast<int>(bricks);
   }

@@ -1,11 +1,11 @@
 #include <barchan/core/generators/file_particles.hpp>
 
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include <barchan/core/base/error.hpp>
+#include <barchan/core/io/particle_columns.hpp>
 
 namespace barchan {
 namespace {
@@ -77,9 +77,7 @@ std::vector<std::string> notes_on(const Model& model, const ParticleFile& file) 
   std::vector<std::string> notes;
   for (const std::string& note : file.notes) notes.push_back(file.file + ": " + note);
   const std::string boxes = file.box ? compare_boxes(model, *file.box) : "";
-  const bool has_temperatures = std::ranges::any_of(
-      file.particles, [](const ParticleData& p) { return !std::isnan(p.temperature); });
-  if (has_temperatures && !model.heat.is_on)
+  if (have_heat(file.particles) && !model.heat.is_on)
     notes.push_back(file.file + ": temperatures are not used: the deck has no [heat]");
   if (!boxes.empty()) notes.push_back(file.file + ": " + boxes);
   return notes;

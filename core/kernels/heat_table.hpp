@@ -40,7 +40,7 @@ template <int Dim>
 }
 
 /// The largest step of conduction, of the particles of a material [s]: heat capacity over the
-/// conductance of as many of the widest contacts as fit around the smallest of them. Widest: with
+/// conductance of 12 of the widest contacts (disks: 6) of the smallest of them. Widest: with
 /// the overlap of limits.overlap_error. Within it no temperature leaves the range of those around.
 struct HeatLimit {
   int material = 0;

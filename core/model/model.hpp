@@ -23,6 +23,7 @@ enum class OutsidePolicy { Error, Delete };
 /// How ranks are cut: in the way with the smallest predicted step, into strips, or into bricks,
 /// a number along each axis.
 struct CutWish {
+  static constexpr int kMost = 1 << 20;  ///< bricks along an axis
   enum class Kind { Auto, Strips, Bricks };
   Kind kind = Kind::Auto;
   std::array<int, 3> bricks{1, 1, 1};  ///< along x, y and z

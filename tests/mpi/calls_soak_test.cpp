@@ -62,8 +62,10 @@ class Caller {
         return load_all(vector(2.0));
       case 4:
         return sim_.clear_forces();
-      case 5:
-        return sim_.scatter(ParticleField::Velocity, some_ids(), three_each());
+      case 5: {
+        const auto ids = some_ids();  // before the values, of which there are as many
+        return sim_.scatter(ParticleField::Velocity, ids, three_each());
+      }
       case 6:
         return go_and_come();
       case 7:

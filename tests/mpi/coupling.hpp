@@ -8,8 +8,8 @@
 
 #include <string>
 
+#include "law_scenarios.hpp"
 #include "running.hpp"
-#include "scenarios.hpp"
 
 namespace barchan::test {
 

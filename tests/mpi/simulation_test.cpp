@@ -17,8 +17,8 @@
 #include <barchan/tasks/forecast.hpp>
 #include <barchan/tasks/strip_plan.hpp>
 
+#include "law_scenarios.hpp"
 #include "running.hpp"
-#include "scenarios.hpp"
 
 namespace barchan::test {
 namespace {

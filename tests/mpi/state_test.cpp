@@ -8,8 +8,8 @@
 
 #include <barchan/core/base/error.hpp>
 
+#include "law_scenarios.hpp"
 #include "running.hpp"
-#include "scenarios.hpp"
 
 namespace barchan::test {
 namespace {

@@ -84,7 +84,7 @@ TEST(HeatDeck, RefusesWhatHasNoMeaning) {
       {{"temperature = 400.0", "temperature = 400.0\nheat_flux = 1.0"},
        {"both temperature and heat_flux"}},
       {{"[heat]\ntemperature = 310.0\n", ""},
-       {":12:16: conductivity has no place where heat does not flow", "add a table [heat]"}},
+       {":12:16: conductivity is given, but the deck has no table [heat]", "add [heat]"}},
       {{"[heat]\n", "[heat]\nfriction = true\n"}, {"friction", "[heat]"}},
   };
   for (const Case& c : cases) {
