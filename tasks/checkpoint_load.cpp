@@ -79,26 +79,26 @@ class Loader {
         checkpoint_(checkpoint),
         limits_(limits_of(model)),
         grid_(grid),
-        counts_(room_of(grid, 0).cells) {}
+        loads_(room_of(grid, 0).cells) {}
 
   /// Particles by coordinates of cells, and the totals. Collective.
   void count() {
-    std::vector<std::int64_t> sums(counts_.all().size() + num_totals(limits_.num_walls), 0);
+    std::vector<std::int64_t> sums(loads_.all().size() + num_totals(limits_.num_walls), 0);
     agree(communicator_, [&] {
       const auto stride = static_cast<std::size_t>(communicator_.size());
       for (auto r = static_cast<std::size_t>(communicator_.rank()); r < num_files(); r += stride)
         count_file(r, sums);
     });
-    std::ranges::copy(counts_.all(), sums.begin());
+    std::ranges::copy(loads_.all(), sums.begin());
     communicator_.allreduce_sum(std::span<std::int64_t>(sums));
     communicator_.allreduce_max(std::span(&outrun_, 1));
-    const auto totals = sums.begin() + static_cast<std::ptrdiff_t>(counts_.all().size());
-    std::copy(sums.begin(), totals, counts_.all().begin());
+    const auto totals = sums.begin() + static_cast<std::ptrdiff_t>(loads_.all().size());
+    std::copy(sums.begin(), totals, loads_.all().begin());
     totals_.assign(totals, sums.end());
   }
 
   LoadedShares load(const LaneMap& lanes) {
-    LoadedShares loaded{equal_cuts(counts_, lanes.shape()), {}, totals_};
+    LoadedShares loaded{equal_cuts(loads_, lanes.shape()), {}, totals_};
     const int num_lanes = lanes.shape().num_lanes();
     loaded.shares.resize(static_cast<std::size_t>(num_lanes));
     begin_ = grid_.num_slabs();
@@ -142,11 +142,11 @@ class Loader {
     for (std::size_t p = 0; p < share.ids.size(); ++p) {
       const double at = grid_.along_strips(share.positions.data() + p * Dim);
       if (!(at >= listed.lo && at <= listed.hi)) refuse(r, "has particles outside its strip");
-      counts_.add<Dim>(cell(share, p));
+      loads_.add<Dim>(cell(share, p));
     }
     for (const double distance2 : share.outruns) outrun_ = std::max(outrun_, distance2);
     for (std::size_t t = 0; t < share.totals.size(); ++t)
-      sums[counts_.all().size() + t] += share.totals[t];
+      sums[loads_.all().size() + t] += share.totals[t];
     const bool is_whole =
         static_cast<std::int64_t>(share.ids.size()) == listed.particles &&
         static_cast<std::int64_t>(share.contact_ids.size() / 2) == listed.contacts &&
@@ -191,7 +191,7 @@ class Loader {
   const OpenCheckpoint& checkpoint_;
   ShareLimits limits_;
   const Grid<Dim>& grid_;
-  CellCounts counts_;
+  CellLoads loads_;
   std::vector<std::int64_t> totals_;
   double outrun_ = 0.0;
   std::vector<CellBox<Dim>> boxes_;  ///< of this rank's lanes

@@ -285,7 +285,10 @@ Timings Simulation::EngineOf<Dim>::timings() const {
   LoopSeconds loop = loop_;
   loop.rebuilds = lists_.seconds();
   loop.reductions = schedule_.wait_seconds() + plates_.wait_seconds();
-  return timings_of(parts_, graph_.times(), loop);
+  Timings t = timings_of(parts_, graph_.times(), loop);
+  for (int l = 0; l < parts_.strip.num_lanes(); ++l)
+    t.worked.push_back(to_seconds(graph_.worked(l)));
+  return t;
 }
 
 template <int Dim>

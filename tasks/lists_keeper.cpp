@@ -113,12 +113,21 @@ void ListsKeeper<Dim>::size_chunks(std::int64_t step) {
 }
 
 template <int Dim>
+void ListsKeeper<Dim>::note_work(std::int64_t step) {
+  for (int l = 0; l < run_.strip.num_lanes(); ++l) {
+    const std::int64_t particles = run_.strip.lane(l).brick.store.num_owned;
+    run_.rebuild.work().note(l, graph_.worked(l), particles, step);
+  }
+}
+
+template <int Dim>
 void ListsKeeper<Dim>::renew(std::int64_t step) {
   size_chunks(step);
   const std::int64_t begin = now_ns();
   const double outrun = wall_outrun();
   run_.world.skin = next_skin();
   schedule_.set_skin(run_.world.skin);
+  note_work(step);
   if (step >= hooks_.loss.step && run_.communicator.rank() + 1 == run_.communicator.size())
     run_.strip.lane(0).rebuild.carry().lose(std::exchange(hooks_.loss.what, Loss::Nothing));
   run_.rebuild.rebuild(

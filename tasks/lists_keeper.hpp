@@ -53,6 +53,7 @@ class ListsKeeper {
  private:
   [[nodiscard]] double next_skin() const;
   void size_chunks(std::int64_t step);
+  void note_work(std::int64_t step);
 
   RunParts<Dim>& run_;
   StepGraph<Dim>& graph_;

@@ -46,6 +46,7 @@ struct Timings {
   double loop_seconds = 0.0;             ///< inside run()
   std::int64_t steps = 0;                ///< of this loop, without those before a restart
   std::map<std::string, double> phases;  ///< name → seconds; they sum up to loop_seconds
+  std::vector<double> worked;            ///< by lane: seconds in tasks of steps, without waiting
   std::map<std::string, CommunicationTime> communication;  ///< "halo", "rebuild", "reductions"
   double in_flight_seconds = 0.0;                          ///< all kinds
   double exposed_seconds = 0.0;

@@ -66,6 +66,11 @@ class StepClock {
   void begin_run();
   void end_run(std::int64_t begin);
   [[nodiscard]] StepTimes times() const;
+  /// That a lane has worked in chunks and bands [ns].
+  [[nodiscard]] std::int64_t worked(int lane) const {
+    const OfLane& of = lanes_[static_cast<std::size_t>(lane)];
+    return of.chunks + of.bands;
+  }
 
  private:
   struct alignas(64) OfLane {

@@ -34,6 +34,8 @@ class StepGraph {
   /// Runs a function for every lane on the graph's threads.
   void for_each_lane(const std::function<void(int)>& body);
   [[nodiscard]] StepTimes times() const { return clock_.times(); }
+  /// That a lane has worked in steps [ns].
+  [[nodiscard]] std::int64_t worked(int lane) const { return clock_.worked(lane); }
   [[nodiscard]] GraphShape shape() const;
   /// Records tasks and messages from now on. @param trace  lives longer; null: stop recording
   void set_trace(Trace* trace) { clock_.set_trace(trace); }

@@ -81,7 +81,7 @@ template std::vector<CellAt<2>> cells_of<2>(const Grid<2>&, const ParticleSet&);
 template std::vector<CellAt<3>> cells_of<3>(const Grid<3>&, const ParticleSet&);
 
 std::vector<std::int64_t> CutPlan::rank_counts(const CutShape& shape) const {
-  CellCounts sums(room.cells);
+  CellLoads sums(room.cells);
   for (const auto& at : cells) sums.add<3>(at);
   const Cuts cuts = equal_cuts(sums, {shape.form, shape.ranks, {1, 1, 1}});
   std::vector<std::int64_t> counts(static_cast<std::size_t>(shape.num_ranks()), 0);

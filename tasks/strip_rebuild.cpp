@@ -24,6 +24,7 @@ constexpr int kRecutEvery = 8;  // rebuilds between looks at the balance
 template <int Dim>
 StripRebuild<Dim>::StripRebuild(Strip<Dim>& strip)
     : strip_(strip),
+      work_(strip.num_lanes()),
       sizes_(strip.communicator(), 1, 0),
       outboxes_(static_cast<std::size_t>(strip.num_lanes())),
       outgoing_(static_cast<std::size_t>(strip.num_links())) {
@@ -34,9 +35,9 @@ template <int Dim>
 void StripRebuild<Dim>::seed(const ParticleSet& set) {
   const Grid<Dim>& grid = strip_.world().grid;
   const std::vector<CellAt<Dim>> cells = cells_of(grid, set);
-  CellCounts counts(room_of(grid, 0).cells);
-  for (const CellAt<Dim>& cell : cells) counts.add<Dim>(cell);
-  cuts_ = equal_cuts(counts, strip_.map().shape());
+  CellLoads loads(room_of(grid, 0).cells);
+  for (const CellAt<Dim>& cell : cells) loads.add<Dim>(cell);
+  cuts_ = equal_cuts(loads, strip_.map().shape());
   std::vector<Placement<Dim>> places;
   places.reserve(static_cast<std::size_t>(strip_.num_lanes()));
   for (int l = 0; l < strip_.num_lanes(); ++l) places.push_back(placement_of(l));
@@ -100,15 +101,17 @@ void StripRebuild<Dim>::recut() {
   const CutShape& shape = strip_.map().shape();
   if (shape.num_ranks() * shape.num_lanes() == 1) return;
   const Grid<Dim>& grid = strip_.world().grid;
-  CellCounts counts(room_of(grid, 0).cells);
-  for (const Lane<Dim>& lane : strip_.lanes()) {
-    for (std::int32_t i = 0; i < lane.brick.store.num_owned; ++i)
-      counts.add<Dim>(grid.cell(lane.brick.store.x(i)));
+  work_.end_window();
+  CellLoads loads(room_of(grid, 0).cells);
+  for (int l = 0; l < strip_.num_lanes(); ++l) {
+    const auto& store = strip_.lane(l).brick.store;
+    for (std::int32_t i = 0; i < store.num_owned; ++i)
+      loads.add<Dim>(grid.cell(store.x(i)), work_.weight(l));
   }
   const std::int64_t begin = now_ns();
-  taped_sum(strip_.communicator(), counts.all());
+  taped_sum(strip_.communicator(), loads.all());
   count_wait(waits_.migration, Trace::Slice::Reduction, begin, 0);
-  move_cuts(cuts_, counts, shape);
+  move_cuts(cuts_, loads, shape);
 }
 
 template <int Dim>

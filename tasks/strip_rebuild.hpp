@@ -9,6 +9,7 @@
 #include <barchan/comm/base/reduction.hpp>
 #include <barchan/core/particles/share.hpp>
 #include <barchan/tasks/strip.hpp>
+#include <barchan/tasks/work_meter.hpp>
 
 namespace barchan {
 
@@ -56,7 +57,8 @@ class StripRebuild {
   [[nodiscard]] std::int64_t num_rebuilds() const { return num_rebuilds_; }
   /// Particles that left this rank.
   [[nodiscard]] std::int64_t num_migrations() const { return num_migrations_; }
-  std::int64_t chunk_pairs = 1 << 14;  ///< pairs per chunk from the next rebuild on
+  [[nodiscard]] WorkMeter& work() { return work_; }  ///< by which cuts move
+  std::int64_t chunk_pairs = 1 << 14;                ///< pairs per chunk from the next rebuild on
 
  private:
   using Bytes = std::vector<std::byte>;
@@ -82,6 +84,7 @@ class StripRebuild {
   void count_wait(double& seconds, Trace::Slice name, std::int64_t begin, std::int64_t posted);
 
   Strip<Dim>& strip_;
+  WorkMeter work_;
   Reduction sizes_;                                   ///< of halos to come
   std::vector<std::vector<Bytes>> outboxes_;          ///< by lane and tie
   std::vector<std::span<const std::byte>> outgoing_;  ///< by link

@@ -9,7 +9,8 @@
 namespace barchan {
 namespace {
 
-constexpr double kToleratedImbalance = 1.1;
+constexpr double kToleratedImbalance = 1.03;
+constexpr double kLeastGain = 0.01;  // of the largest load: moving cuts moves particles
 
 // sums[s] = particles in the slabs before s. Where nobody is, slabs count one each.
 std::vector<std::int64_t> prefix_sums(std::span<const std::int64_t> counts) {
@@ -42,7 +43,7 @@ int nearest_cut(const std::vector<std::int64_t>& sums, int part, int num_parts, 
   return best;
 }
 
-std::int64_t largest_count(std::span<const int> cuts, const std::vector<std::int64_t>& sums) {
+std::int64_t largest_load(std::span<const int> cuts, const std::vector<std::int64_t>& sums) {
   std::int64_t largest = 0;
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
     largest = std::max(largest, sums[static_cast<std::size_t>(cuts[i + 1])] -
@@ -57,16 +58,16 @@ int max_strips(int num_slabs, int min_slabs) {
   return std::max(1, num_slabs / std::max(1, min_slabs));
 }
 
-std::vector<int> cut_equal(std::span<const std::int64_t> count_per_slab, int num_strips,
+std::vector<int> cut_equal(std::span<const std::int64_t> load_of_slab, int num_strips,
                            int min_slabs) {
-  const int num_slabs = static_cast<int>(count_per_slab.size());
+  const int num_slabs = static_cast<int>(load_of_slab.size());
   if (num_strips > 1 && num_strips > max_strips(num_slabs, min_slabs)) {
     throw InputError(std::to_string(num_strips) + " ranks are more than the domain has strips of " +
                          std::to_string(min_slabs) + " cells (" + std::to_string(num_slabs) +
                          " cells along the strip axis)",
                      "use at most " + std::to_string(max_strips(num_slabs, min_slabs)) + " ranks");
   }
-  const auto sums = prefix_sums(count_per_slab);
+  const auto sums = prefix_sums(load_of_slab);
   std::vector<int> cuts(static_cast<std::size_t>(num_strips) + 1, 0);
   cuts.back() = num_slabs;
   for (int i = 1; i < num_strips; ++i) {
@@ -78,35 +79,36 @@ std::vector<int> cut_equal(std::span<const std::int64_t> count_per_slab, int num
   return cuts;
 }
 
-std::vector<int> recut(std::span<const int> old_cuts, std::span<const std::int64_t> count_per_slab,
+std::vector<int> recut(std::span<const int> old_cuts, std::span<const std::int64_t> load_of_slab,
                        int num_strips, int min_slabs) {
-  const int num_slabs = static_cast<int>(count_per_slab.size());
+  const int num_slabs = static_cast<int>(load_of_slab.size());
   if (old_cuts.size() != static_cast<std::size_t>(num_strips) + 1 || old_cuts.back() != num_slabs) {
     throw std::logic_error("recut: the old cuts belong to another grid or number of strips");
   }
   std::vector<int> cuts(old_cuts.begin(), old_cuts.end());
-  if (imbalance(old_cuts, count_per_slab) <= kToleratedImbalance) return cuts;
+  if (imbalance(old_cuts, load_of_slab) <= kToleratedImbalance) return cuts;
 
-  const auto sums = prefix_sums(count_per_slab);
+  const auto sums = prefix_sums(load_of_slab);
   for (int i = 1; i < num_strips; ++i) {
     const auto at = static_cast<std::size_t>(i);
     const int lowest = std::max(old_cuts[at - 1] + 1, cuts[at - 1] + min_slabs);
     const int highest = std::min(old_cuts[at + 1] - 1, num_slabs - (num_strips - i) * min_slabs);
     cuts[at] = nearest_cut(sums, i, num_strips, lowest, highest);
   }
-  if (largest_count(cuts, sums) >= largest_count(old_cuts, sums))
+  const auto before = static_cast<double>(largest_load(old_cuts, sums));
+  if (static_cast<double>(largest_load(cuts, sums)) > (1.0 - kLeastGain) * before)
     return {old_cuts.begin(), old_cuts.end()};
   return cuts;
 }
 
-double imbalance(std::span<const int> cuts, std::span<const std::int64_t> count_per_slab) {
-  if (std::all_of(count_per_slab.begin(), count_per_slab.end(),
+double imbalance(std::span<const int> cuts, std::span<const std::int64_t> load_of_slab) {
+  if (std::all_of(load_of_slab.begin(), load_of_slab.end(),
                   [](std::int64_t count) { return count == 0; })) {
     return 1.0;
   }
-  const auto sums = prefix_sums(count_per_slab);
+  const auto sums = prefix_sums(load_of_slab);
   const double mean = static_cast<double>(sums.back()) / static_cast<double>(cuts.size() - 1);
-  return static_cast<double>(largest_count(cuts, sums)) / mean;
+  return static_cast<double>(largest_load(cuts, sums)) / mean;
 }
 
 int strip_of(std::span<const int> cuts, int slab) {

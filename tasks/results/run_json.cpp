@@ -125,7 +125,8 @@ void add_further(const RunSummary& s, Json& json) {
   };
   json["cuts"] = {{"form", s.cuts.are_strips ? "strips" : "bricks"},
                   {"ranks", along_axes(s.cuts.ranks)},
-                  {"lanes", along_axes(s.cuts.lanes)}};
+                  {"lanes", along_axes(s.cuts.lanes)},
+                  {"imbalance", s.imbalance()}};
   json["loop_steps"] = s.loop_steps;
   json["exchange_choice"] = choice_of(s.choice);
   json["phases_most"] = s.phases_most;

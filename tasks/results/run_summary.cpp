@@ -36,6 +36,7 @@ std::string own_numbers(const Simulation& simulation) {
                                {"memory", simulation.memory_bytes()},
                                {"loop", t.loop_seconds},
                                {"phases", t.phases},
+                               {"worked", t.worked},
                                {"in_flight", t.in_flight_seconds},
                                {"exposed", t.exposed_seconds},
                                {"kinds", kinds},
@@ -60,6 +61,7 @@ void add_numbers(const std::vector<std::string>& of_ranks, RunSummary& summary) 
       summary.phases[name] += share * seconds.get<double>();
       summary.phases_most[name] = std::max(summary.phases_most[name], seconds.get<double>());
     }
+    for (const double seconds : n.at("worked")) summary.lanes_worked.push_back(seconds);
     for (const auto& [name, time] : n.at("kinds").items()) {
       summary.communication[name].in_flight += share * time.at(0).get<double>();
       summary.communication[name].exposed += share * time.at(1).get<double>();
@@ -89,6 +91,12 @@ double RunSummary::particle_steps_per_second() const {
 double RunSummary::hidden_fraction() const {
   if (!(in_flight_seconds > 0.0)) return 1.0;
   return std::clamp(1.0 - exposed_seconds / in_flight_seconds, 0.0, 1.0);
+}
+
+double RunSummary::imbalance() const {
+  double sum = 0.0, most = 0.0;
+  for (const double seconds : lanes_worked) sum += seconds, most = std::max(most, seconds);
+  return sum > 0.0 ? most * static_cast<double>(lanes_worked.size()) / sum : 1.0;
 }
 
 double RunSummary::potential() const {

@@ -41,6 +41,7 @@ struct RunSummary {
   double memory_bytes = 0.0;                               ///< all ranks
   std::map<std::string, double> phases;                    ///< seconds per rank, averaged
   std::map<std::string, double> phases_most;               ///< of the rank with the most
+  std::vector<double> lanes_worked;                        ///< of all ranks; see Timings
   double in_flight_seconds = 0.0, exposed_seconds = 0.0;   ///< per rank, averaged
   double exposed_most = 0.0;                               ///< of the rank with the most
   std::map<std::string, CommunicationTime> communication;  ///< by kind; per rank, averaged
@@ -55,6 +56,8 @@ struct RunSummary {
   bool interrupted = false;
 
   [[nodiscard]] double particle_steps_per_second() const;
+  /// Work of the lane that worked most, over the mean; 1 where nobody worked.
+  [[nodiscard]] double imbalance() const;
   /// Share of the time in flight in which there was work to do; 1 where nothing was in flight.
   [[nodiscard]] double hidden_fraction() const;
   [[nodiscard]] double potential() const;  ///< elastic and gravitational [J]
