@@ -42,9 +42,17 @@ add_executable(bits $BARCHAN_SOURCE/tests/install/bits.cpp)
 target_link_libraries(bits PRIVATE barchan::barchan)
 target_compile_options(bits PRIVATE -O1 -march=native -ffast-math -fno-inline)
 target_link_options(bits PRIVATE -ffast-math)
+# The adapter for preCICE, where that is not installed against a header that stands in, with a partner that is known.
+add_executable(precice_wall $work/installed/share/barchan/examples/precice/precice_wall.cpp)
+target_include_directories(precice_wall PRIVATE $BARCHAN_SOURCE/tests/install/stand_in)
+target_link_libraries(precice_wall PRIVATE barchan::barchan)
 EOF
 cmake -S bits -B bits_build -G Ninja -DCMAKE_CXX_FLAGS="${CXXFLAGS:-}" -DCMAKE_PREFIX_PATH="$work/installed" > bits.log
 cmake --build bits_build >> bits.log
+for ranks in 1 2; do
+  pushed=$(mpirun -n $ranks bits_build/precice_wall installed/share/barchan/examples/precice/wall.toml lid none.xml)
+  [[ $pushed == *" 100 N" ]] || { echo "the spring of 5e4 N/m by two contacts of 1e5 N/m is due 100 N: $pushed"; exit 1; }
+done
 installed/bin/barchan run "$BARCHAN_SOURCE/tests/install/abi.toml" --quiet --out bits.out --force --set time.end=0.06
 digest=$(mpirun -n 2 bits_build/bits "$BARCHAN_SOURCE/tests/install/abi.toml")
 grep -q "\"state_digest\": \"$digest\"" bits.out/run.json ||
