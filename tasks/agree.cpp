@@ -25,4 +25,21 @@ void agree(const Communicator& communicator, const std::function<void()>& work) 
   throw CommonError(error.substr(1));
 }
 
+void agree_between_steps(const Communicator& communicator, const std::string& where,
+                         const std::function<void()>& work) {
+  std::string error;
+  const auto say = [&](const char* what) {
+    error = where + ", rank " + std::to_string(communicator.rank()) + ": " + what;
+  };
+  try {
+    work();
+  } catch (const std::exception& e) {
+    say(e.what());
+  } catch (...) {
+    say("an exception of unknown kind");
+  }
+  error = communicator.first_error(error);
+  if (!error.empty()) throw AgreedError(error);
+}
+
 }  // namespace barchan

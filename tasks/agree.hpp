@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 #include <barchan/comm/base/communicator.hpp>
 
@@ -13,5 +14,10 @@ namespace barchan {
 /// nobody waits for a rank that threw. @pre `work` calls nothing that is collective. Collective.
 /// Errors: InputError as thrown; all else as CommonError.
 void agree(const Communicator& communicator, const std::function<void()>& work);
+
+/// The same for work of a caller's between two steps.
+/// @param where  such as "step 7: on_note". Errors: AgreedError that names the rank
+void agree_between_steps(const Communicator& communicator, const std::string& where,
+                         const std::function<void()>& work);
 
 }  // namespace barchan

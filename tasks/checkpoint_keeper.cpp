@@ -209,11 +209,11 @@ void CheckpointKeeper::take_agreement() {
   }
   folder_.discard(copy_.step);
   const auto factor = static_cast<std::int64_t>(kRankFactor);
-  warnings_.push_back(
-      fmt::format("the checkpoint of step {} could not be written: rank {}, {}: {}; {}", copy_.step,
-                  failure % factor, folder_.path(), describe(static_cast<int>(failure / factor)),
-                  last_complete_.empty() ? "there is none before it"
-                                         : "the one before, " + last_complete_ + ", stays"));
+  tell("", fmt::format("the checkpoint of step {} could not be written: rank {}, {}: {}; {}",
+                       copy_.step, failure % factor, folder_.path(),
+                       describe(static_cast<int>(failure / factor)),
+                       last_complete_.empty() ? "there is none before it"
+                                              : "the one before, " + last_complete_ + ", stays"));
 }
 
 void CheckpointKeeper::take_commit() {
@@ -222,12 +222,19 @@ void CheckpointKeeper::take_commit() {
   std::error_code ignored;
   last_is_good_ = code_ == 0 || std::filesystem::exists(path + "/" + kManifestName, ignored);
   if (last_is_good_) last_complete_ = path;
-  if (code_ == 0) return;
+  if (code_ == 0) return tell(path, "");
   if (!last_is_good_) folder_.discard(copy_.step);
-  warnings_.push_back(fmt::format(
-      "the checkpoint of step {} {}: {}: {}", copy_.step,
-      last_is_good_ ? "is complete, but older ones could not be removed" : "could not be finished",
-      folder_.path(), describe(code_)));
+  tell(last_is_good_ ? path : "",
+       fmt::format("the checkpoint of step {} {}: {}: {}", copy_.step,
+                   last_is_good_ ? "is complete, but older ones could not be removed"
+                                 : "could not be finished",
+                   folder_.path(), describe(code_)));
+}
+
+/// Events that nobody takes are not many: one a checkpoint.
+void CheckpointKeeper::tell(const std::string& folder, const std::string& warning) {
+  if (!warning.empty()) warnings_.push_back(warning);
+  events_.push_back({copy_.step, folder, warning});
 }
 
 bool CheckpointKeeper::finish() {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <barchan/comm/base/reduction.hpp>
@@ -11,6 +12,7 @@
 #include <barchan/core/checkpoint/checkpoint_folder.hpp>
 #include <barchan/core/model/model.hpp>
 #include <barchan/core/particles/share.hpp>
+#include <barchan/tasks/run_events.hpp>
 
 namespace barchan {
 
@@ -67,6 +69,8 @@ class CheckpointKeeper {
   /// Where the newest complete checkpoint of this run is; rank 0; empty before the first.
   [[nodiscard]] const std::string& last_complete() const { return last_complete_; }
   [[nodiscard]] std::vector<std::string> take_warnings();
+  /// What became of checkpoints since the last call; rank 0.
+  [[nodiscard]] std::vector<CheckpointEvent> take_events() { return std::exchange(events_, {}); }
 
  private:
   enum class Phase { Idle, Writing, Agreeing, Committing };
@@ -77,6 +81,7 @@ class CheckpointKeeper {
   void begin_agreement();
   void take_agreement();
   void take_commit();
+  void tell(const std::string& folder, const std::string& warning);
   void wait_idle();
   [[nodiscard]] std::vector<std::int64_t> numbers() const;
   [[nodiscard]] Manifest agreed_manifest() const;
@@ -103,6 +108,7 @@ class CheckpointKeeper {
   bool last_is_good_ = false;
   std::string last_complete_;
   std::vector<std::string> warnings_;
+  std::vector<CheckpointEvent> events_;
   std::int64_t last_time_ = now_ns();
   int num_exceptions_;
 };

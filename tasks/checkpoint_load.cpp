@@ -20,9 +20,9 @@
 namespace barchan {
 namespace {
 
-ShareLimits limits_of(const Model& model) {
-  return {model.dimension,        model.materials.size(), model.walls.size(),
-          model.bond_laws.size(), model.contacts.law,     model.heat.is_on};
+ShareLimits limits_of(const Model& model, const CheckpointState& state) {
+  return {model.dimension,    model.materials.size(), model.walls.size(), model.bond_laws.size(),
+          model.contacts.law, model.heat.is_on,       num_carried(state)};
 }
 
 template <class T>
@@ -32,11 +32,13 @@ void take(const std::vector<T>& from, std::size_t number, std::size_t width, std
 }
 
 template <int Dim>
-void take_particle(const CheckpointShare& from, std::size_t p, CheckpointShare& to) {
+void take_particle(const CheckpointShare& from, std::size_t p, int num_carried,
+                   CheckpointShare& to) {
   for_each_field<Dim>([&](const auto& field) {
     const auto& values = from.*field.saved;
     if (!values.empty()) take(values, p, static_cast<std::size_t>(field.width), to.*field.saved);
   });
+  take(from.carried, p, static_cast<std::size_t>(num_carried), to.carried);
 }
 
 using Ids = std::unordered_set<std::int64_t>;
@@ -77,7 +79,7 @@ class Loader {
          const Grid<Dim>& grid)
       : communicator_(communicator),
         checkpoint_(checkpoint),
-        limits_(limits_of(model)),
+        limits_(limits_of(model, checkpoint.state)),
         grid_(grid),
         loads_(room_of(grid, 0).cells) {}
 
@@ -182,7 +184,7 @@ class Loader {
     for (std::size_t p = 0; p < from.ids.size(); ++p) {
       const CellAt<Dim> at = cell(from, p);
       for (std::size_t l = 0; l < boxes_.size(); ++l) {
-        if (boxes_[l].contains(at)) take_particle<Dim>(from, p, shares[l]);
+        if (boxes_[l].contains(at)) take_particle<Dim>(from, p, limits_.num_carried, shares[l]);
       }
     }
   }

@@ -58,6 +58,7 @@ Simulation::EngineOf<Dim>::EngineOf(const Model& model, const OpenCheckpoint& ch
   begin_loop();
   step_ = s.step;
   stages_.restore(s);
+  (void)fields_.restore(s.fields);  // decode_state has seen that they are fields
   if (s.last_dt > 0.0) {
     since_ = s.since;
     parts_.world.last_dt = s.last_dt;
@@ -96,7 +97,13 @@ std::int64_t Simulation::EngineOf<Dim>::run(std::int64_t num_steps) {
   std::int64_t done = 0;
   stopped_ = stopped_ && num_steps == 0;
   try {
-    while (done < num_steps && !stopped_ && !last_stage_ends()) done += go_on(num_steps - done);
+    while (done < num_steps && !stopped_ && !last_stage_ends()) {
+      if (events_.is_visit_due(step_)) visit_step();
+      done += go_on(events_.steps_before_next(step_, num_steps - done));
+      if (events_.progress.is_due(step_)) tell_progress();
+      if (events_.is_news_due(step_)) tell_news();
+    }
+    tell_news();
   } catch (const AgreedError&) {
     is_in_step_ = false;  // thrown before the step did anything
     failure_ = std::current_exception();
@@ -298,6 +305,7 @@ CheckpointState Simulation::EngineOf<Dim>::state() {
   s.num_particles = population_.size;
   s.left = population_.left;
   s.look = schedule_.pending_look(step_);
+  s.fields = fields_.saved();
   if (since_.step > 0) {
     s.since = since_;
     s.last_dt = parts_.world.last_dt;

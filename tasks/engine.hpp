@@ -25,9 +25,9 @@
 namespace barchan {
 
 /// Simulation's inside, free of the dimension.
-class Simulation::Engine {
+class Simulation::Engine : public BrickSource {
  public:
-  virtual ~Engine() { generation_.end(); }
+  ~Engine() override { generation_.end(); }
   virtual std::int64_t run(std::int64_t num_steps) = 0;
   virtual void for_each_owned(const std::function<void(const OwnedParticle&)>& visit) const = 0;
   virtual void for_each_bond(const BondVisitor& visit) = 0;
@@ -55,6 +55,12 @@ class Simulation::Engine {
   virtual void set_loads(const Loads& loads) = 0;
   virtual Gathered gather(ParticleField field) = 0;
   virtual void scatter(ParticleField field, std::span<const std::int64_t> ids,
+                       std::span<const double> values) = 0;
+  virtual void keep_breaks() = 0;  ///< where somebody wants to hear of them
+  virtual void add_field(const std::string& name, int components) = 0;
+  virtual std::vector<FieldView> field(const CallerField& field) = 0;
+  virtual Gathered gather(const CallerField& field) = 0;
+  virtual void scatter(const CallerField& field, std::span<const std::int64_t> ids,
                        std::span<const double> values) = 0;
   virtual void add(const ParticleSet& newcomers) = 0;
   virtual void remove(std::span<const std::int64_t> ids) = 0;
@@ -91,6 +97,13 @@ class Simulation::Engine {
   TimePoint since_;  ///< of time()
   Stages stages_{model_};
   Population population_;
+  /// run() is in a callback of the caller's.
+  enum class Telling { Nothing, OnOneThread, OnAllThreads };
+  template <class Work>
+  void tell(const char* event, Telling how, Work&& work);
+
+  Telling telling_ = Telling::Nothing;
+  RunEvents events_;
   bool stopped_ = false;
   bool has_new_contacts_ = false;  ///< somebody has called set_contact
   bool has_account_ = false;       ///< of energy, where one is kept
@@ -104,6 +117,7 @@ class Simulation::Engine {
   Notes notes_;
   Generation generation_;
   ParticleIndex index_;
+  CallerFields fields_;
 };
 
 /// The time loop: what comes between two steps, and who does it. One step itself is StepGraph.
@@ -149,6 +163,9 @@ class Simulation::EngineOf final : public Simulation::Engine {
   void save_checkpoint() override;
   [[nodiscard]] int num_bricks() const override { return parts_.strip.num_lanes(); }
   std::vector<ParticleView> owned() override;
+  LoadView loads_of(int brick) override;
+  StridedSpan<double> field_of(int brick, const std::string& name) override;
+  void keep_breaks() override;
   std::vector<LoadView> loads() override;
   std::shared_ptr<const void> release_arrays() override;
   [[nodiscard]] std::int64_t highest_id() override;
@@ -156,6 +173,11 @@ class Simulation::EngineOf final : public Simulation::Engine {
   void set_loads(const Loads& loads) override;
   Gathered gather(ParticleField field) override;
   void scatter(ParticleField field, std::span<const std::int64_t> ids,
+               std::span<const double> values) override;
+  void add_field(const std::string& name, int components) override;
+  std::vector<FieldView> field(const CallerField& field) override;
+  Gathered gather(const CallerField& field) override;
+  void scatter(const CallerField& field, std::span<const std::int64_t> ids,
                std::span<const double> values) override;
   void add(const ParticleSet& newcomers) override;
   void remove(std::span<const std::int64_t> ids) override;
@@ -188,7 +210,11 @@ class Simulation::EngineOf final : public Simulation::Engine {
   /// Books what springs hold more after change() as given by the caller. Collective.
   void book_elastic(const std::function<void()>& change);
   void turn_wall(std::size_t wall, const Vec3& normal);
-  [[nodiscard]] ParticleView view_of(Lane<Dim>& lane);
+  [[nodiscard]] ParticleView view_of(int brick);
+  void visit_step();
+  void tell_progress();
+  void tell_news();
+  [[nodiscard]] std::vector<BondBreak> gather_breaks();
   [[nodiscard]] const ParticleIndex& index();
   /// Of this rank, others have lane < 0. Collective. Errors: InputError for an id that there is not
   [[nodiscard]] std::vector<ParticlePlace> find_all(std::span<const std::int64_t> ids,

@@ -19,7 +19,7 @@ namespace {
 
 /// The arrays that views show, of one brick.
 struct ReleasedArrays {
-  AlignedVector<double> motion, spin, density, external;
+  AlignedVector<double> motion, spin, density, external, carried;
   AlignedVector<std::int64_t> id;
   AlignedVector<std::uint8_t> type;
 };
@@ -27,9 +27,9 @@ struct ReleasedArrays {
 }  // namespace
 
 template <int Dim>
-ParticleView Simulation::EngineOf<Dim>::view_of(Lane<Dim>& lane) {
+ParticleView Simulation::EngineOf<Dim>::view_of(int brick) {
   using L = Layout<Dim>;
-  const ParticleStore<Dim>& s = lane.brick.store;
+  const ParticleStore<Dim>& s = parts_.strip.lane(brick).brick.store;
   const auto n = static_cast<std::size_t>(s.num_owned);
   const double* motion = s.motion.data();
   BrickArrays a;
@@ -42,29 +42,32 @@ ParticleView Simulation::EngineOf<Dim>::view_of(Lane<Dim>& lane) {
   a.inverse_masses = {motion + L::kInverseMass, n, 1, L::kMotion};
   a.densities = {s.density.data(), n};
   a.types = {s.type.data(), n};
-  return {a, generation_};
+  return {a, generation_, *this, brick};
 }
 
 template <int Dim>
 std::vector<ParticleView> Simulation::EngineOf<Dim>::owned() {
   std::vector<ParticleView> views;
-  for (Lane<Dim>& lane : parts_.strip.lanes()) views.push_back(view_of(lane));
+  for (int b = 0; b < num_bricks(); ++b) views.push_back(view_of(b));
   return views;
 }
 
 template <int Dim>
-std::vector<LoadView> Simulation::EngineOf<Dim>::loads() {
+LoadView Simulation::EngineOf<Dim>::loads_of(int brick) {
   using L = Layout<Dim>;
+  ParticleStore<Dim>& s = parts_.strip.lane(brick).brick.store;
+  make_room(s);
+  const auto n = static_cast<std::size_t>(s.num_owned);
+  return {{s.external.data(), n, Dim, L::kForce},
+          {s.external.data() + L::kTorque, n, kSpins<Dim>, L::kForce},
+          {s.motion.data() + L::kRadius, n, 1, L::kMotion},
+          generation_};
+}
+
+template <int Dim>
+std::vector<LoadView> Simulation::EngineOf<Dim>::loads() {
   std::vector<LoadView> views;
-  for (Lane<Dim>& lane : parts_.strip.lanes()) {
-    ParticleStore<Dim>& s = lane.brick.store;
-    make_room(s);
-    const auto n = static_cast<std::size_t>(s.num_owned);
-    views.emplace_back(
-        StridedSpan<double>(s.external.data(), n, Dim, L::kForce),
-        StridedSpan<double>(s.external.data() + L::kTorque, n, kSpins<Dim>, L::kForce),
-        StridedSpan<const double>(s.motion.data() + L::kRadius, n, 1, L::kMotion), generation_);
-  }
+  for (int b = 0; b < num_bricks(); ++b) views.push_back(loads_of(b));
   return views;
 }
 
@@ -82,6 +85,7 @@ std::shared_ptr<const void> Simulation::EngineOf<Dim>::release_arrays() {
     release(s.spin, old.spin);
     release(s.density, old.density);
     release(s.external, old.external);
+    release(s.carried, old.carried);
     release(s.id, old.id);
     release(s.type, old.type);
   }
@@ -107,7 +111,7 @@ void Simulation::EngineOf<Dim>::for_each_view(
   std::exception_ptr failure;
   graph_.for_each_lane([&](int l) {
     try {
-      visit(view_of(parts_.strip.lane(l)));
+      visit(view_of(l));
     } catch (...) {
       const std::lock_guard<std::mutex> lock(guard);
       if (!failure) failure = std::current_exception();
@@ -167,7 +171,8 @@ CutsInUse Simulation::EngineOf<Dim>::cuts() const {
           along_xyz(shape.lanes, room)};
 }
 
-template ParticleView Simulation::EngineOf<2>::view_of(Lane<2>&);
+template ParticleView Simulation::EngineOf<2>::view_of(int);
+template LoadView Simulation::EngineOf<2>::loads_of(int);
 template std::vector<ParticleView> Simulation::EngineOf<2>::owned();
 template std::vector<LoadView> Simulation::EngineOf<2>::loads();
 template std::shared_ptr<const void> Simulation::EngineOf<2>::release_arrays();
@@ -178,7 +183,8 @@ template const ParticleIndex& Simulation::EngineOf<2>::index();
 template void Simulation::EngineOf<2>::set_loads(const Loads&);
 template CutsInUse Simulation::EngineOf<2>::cuts() const;
 template void Simulation::EngineOf<2>::set_gravity(const Vec3&);
-template ParticleView Simulation::EngineOf<3>::view_of(Lane<3>&);
+template ParticleView Simulation::EngineOf<3>::view_of(int);
+template LoadView Simulation::EngineOf<3>::loads_of(int);
 template std::vector<ParticleView> Simulation::EngineOf<3>::owned();
 template std::vector<LoadView> Simulation::EngineOf<3>::loads();
 template std::shared_ptr<const void> Simulation::EngineOf<3>::release_arrays();

@@ -10,6 +10,7 @@
 #include <barchan/core/generators/check_walls.hpp>
 #include <barchan/core/generators/make_particles.hpp>
 #include <barchan/tasks/agree.hpp>
+#include <barchan/tasks/at_rest.hpp>
 #include <barchan/tasks/engine.hpp>
 #include <barchan/tasks/forecast.hpp>
 #include <barchan/tasks/stability.hpp>
@@ -59,15 +60,12 @@ void check_size(const RunParts<Dim>& run, const ParticleSet& newcomers) {
       "start with a particle as large, somewhere out of the way");
 }
 
-/// Together with those that are there, at rest.
-template <int Dim>
-void check_step_with(const RunParts<Dim>& run, const ParticleSet& newcomers) {
-  ParticleSet all = newcomers;
-  for_each_owned(run.strip, [&](const OwnedParticle& p) {
-    all.particles.push_back(p);
-    all.particles.back().velocity = all.particles.back().omega = Vec3::Zero();
-  });
-  check_time_step(run.model, step_limits(run.model, all));
+/// Together with those that are there. The same verdict on any ranks.
+/// @param there  on rank 0
+void check_step_with(const Model& model, ParticleSet there, const ParticleSet& newcomers) {
+  there.particles.insert(there.particles.end(), newcomers.particles.begin(),
+                         newcomers.particles.end());
+  check_time_step(model, step_limits(model, there));
 }
 
 }  // namespace
@@ -113,7 +111,10 @@ void Simulation::EngineOf<Dim>::add(const ParticleSet& newcomers) {
                          "give ids that are free");
       check_room(parts_, p);
     }
-    check_step_with(parts_, newcomers);
+  });
+  const ParticleSet there = gather_lightest(parts_);
+  agree(communicator_, [&] {
+    if (communicator_.is_root()) check_step_with(model_, there, newcomers);
   });
   begin_account();
   double speed = 0.0;

@@ -74,7 +74,12 @@ void Simulation::EngineOf<Dim>::load(const State::Data& state) {
   const auto& s = static_cast<const StateOf<Dim>&>(state);
   Strip<Dim>& strip = parts_.strip;
   strip.complete_halo();  // takes what is on its way
-  graph_.for_each_lane([&](int l) { strip.lane(l).brick = s.bricks[static_cast<std::size_t>(l)]; });
+  graph_.for_each_lane([&](int l) {
+    Brick<Dim>& brick = strip.lane(l).brick;
+    brick = s.bricks[static_cast<std::size_t>(l)];
+    brick.store.set_num_carried(parts_.world.num_carried);  // fields that came later are zero
+  });
+  keep_breaks();
   generation_.advance();
   schedule_.recall(step_, s.schedule);
   step_ = s.step;

@@ -8,66 +8,11 @@
 #include <barchan/core/model/contact_range.hpp>
 #include <barchan/core/model/validate.hpp>
 #include <barchan/tasks/agree.hpp>
+#include <barchan/tasks/at_rest.hpp>
 #include <barchan/tasks/engine.hpp>
 #include <barchan/tasks/stability.hpp>
 
 namespace barchan {
-namespace {
-
-/// What limits the step.
-struct Mover {
-  std::int64_t id;
-  std::int32_t type, is_fixed;
-  double radius, density, position[3];
-};
-struct Tie {
-  std::int64_t id_a, id_b;
-  std::int32_t law, padding;
-  double length;
-};
-
-/// All particles at rest and all bonds, on rank 0. Collective.
-template <int Dim>
-ParticleSet gather_at_rest(const RunParts<Dim>& run) {
-  std::vector<Mover> movers;
-  std::vector<Tie> ties;
-  for_each_owned(run.strip, [&](const OwnedParticle& p) {
-    movers.push_back({p.id,
-                      p.type,
-                      p.fixed ? 1 : 0,
-                      p.radius,
-                      p.density,
-                      {p.position[0], p.position[1], p.position[2]}});
-  });
-  for (const Lane<Dim>& lane : run.strip.lanes()) {
-    for (std::int32_t b = 0; b < static_cast<std::int32_t>(lane.brick.bonds.bonds().size()); ++b) {
-      const Bond<Dim>& bond = lane.brick.bonds.bonds()[static_cast<std::size_t>(b)];
-      if (lane.brick.counts_bond(b))
-        ties.push_back({bond.id_a, bond.id_b, bond.law, 0, bond.length});
-    }
-  }
-  ParticleSet all;
-  for (const Mover& m : run.communicator.gather_all(std::span<const Mover>(movers))) {
-    ParticleData& p = all.particles.emplace_back();
-    p.id = m.id;
-    p.type = m.type;
-    p.fixed = m.is_fixed != 0;
-    p.radius = m.radius;
-    p.density = m.density;
-    p.position = Vec3(m.position[0], m.position[1], m.position[2]);
-  }
-  for (const Tie& t : run.communicator.gather_all(std::span<const Tie>(ties))) {
-    BondData& bond = all.bonds.emplace_back();
-    bond.id_a = t.id_a;
-    bond.id_b = t.id_b;
-    bond.law = t.law;
-    bond.length = t.length;
-  }
-  return all;
-}
-
-}  // namespace
-
 /// Errors: InputError on every rank: the step of `wanted` is too long for it. Collective.
 template <int Dim>
 void Simulation::EngineOf<Dim>::check_step(const Model& wanted) {

@@ -28,6 +28,16 @@ double ParticleView::mass(std::size_t i) const {
   return inverse > 0.0 ? 1.0 / inverse : std::numeric_limits<double>::infinity();
 }
 
+LoadView ParticleView::loads() const {
+  (void)fresh();
+  return source_->loads_of(brick_);
+}
+
+StridedSpan<double> ParticleView::field(const std::string& name) const {
+  (void)fresh();
+  return source_->field_of(brick_, name);
+}
+
 void LoadView::set(std::size_t i, const Vec3& force, const Vec3& torque) const {
   generation_.require(then_, "loads");
   double *f = forces_[i], *t = torques_by_radius_[i];

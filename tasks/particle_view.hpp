@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -73,13 +74,27 @@ struct BrickArrays {
   std::span<const std::uint8_t> types;
 };
 
+class LoadView;
+
+/// Where a view finds what may be written; the inside of a simulation.
+class BrickSource {
+ public:
+  virtual ~BrickSource() = default;
+  virtual LoadView loads_of(int brick) = 0;
+  virtual StridedSpan<double> field_of(int brick, const std::string& name) = 0;
+};
+
 /// Particles of one brick of this rank, in the memory that the steps work on. Each call looks
 /// whether the rows still stand, and throws StaleView where they do not: so ask for a span once,
 /// and then go over it. Within one generation, spans show the newest values after every run().
 class ParticleView {
  public:
-  ParticleView(const BrickArrays& arrays, Generation generation)
-      : arrays_(arrays), generation_(std::move(generation)), then_(generation_.value()) {}
+  ParticleView(const BrickArrays& arrays, Generation generation, BrickSource& source, int brick)
+      : arrays_(arrays),
+        generation_(std::move(generation)),
+        then_(generation_.value()),
+        source_(&source),
+        brick_(brick) {}
 
   [[nodiscard]] std::size_t size() const { return fresh().ids.size(); }
   [[nodiscard]] std::span<const std::int64_t> ids() const { return fresh().ids; }
@@ -94,6 +109,12 @@ class ParticleView {
   [[nodiscard]] Vec3 angular_velocity(std::size_t i) const;
   [[nodiscard]] double mass(std::size_t i) const;  ///< of a fixed particle infinite [kg]. Computed.
   [[nodiscard]] std::uint64_t generation() const { return then_; }
+  [[nodiscard]] int brick() const { return brick_; }  ///< of this rank, from 0
+  /// The loads on them, to be written in place.
+  [[nodiscard]] LoadView loads() const;
+  /// A field of the caller's own, to be read and written in place.
+  /// Errors: std::invalid_argument: there is no such field
+  [[nodiscard]] StridedSpan<double> field(const std::string& name) const;
 
  private:
   [[nodiscard]] const BrickArrays& fresh() const {
@@ -104,6 +125,8 @@ class ParticleView {
   BrickArrays arrays_;
   Generation generation_;
   std::uint64_t then_;
+  BrickSource* source_;
+  int brick_;
 };
 
 /// The loads on the particles of one brick, to be written in place; row i belongs to row i of the
@@ -137,6 +160,25 @@ class LoadView {
   std::uint64_t then_;
 };
 
+/// A field of the caller's own (Simulation::add_field) of the particles of one brick, to be read
+/// and written in place; row i belongs to row i of the ParticleView.
+class FieldView {
+ public:
+  FieldView(StridedSpan<double> values, Generation generation)
+      : values_(values), generation_(std::move(generation)), then_(generation_.value()) {}
+
+  [[nodiscard]] std::size_t size() const { return values().size(); }
+  [[nodiscard]] StridedSpan<double> values() const {
+    generation_.require(then_, "a field");
+    return values_;
+  }
+
+ private:
+  StridedSpan<double> values_;
+  Generation generation_;
+  std::uint64_t then_;
+};
+
 /// Loads on some particles.
 struct Loads {
   std::span<const std::int64_t> ids;
@@ -162,7 +204,7 @@ enum class ParticleField {
 /// Values of all particles, in order of their ids.
 struct Gathered {
   std::vector<std::int64_t> ids;
-  std::vector<double> values;  ///< width_of(field) each
+  std::vector<double> values;  ///< width_of(field) each, or as many as a field has components
 };
 
 }  // namespace barchan

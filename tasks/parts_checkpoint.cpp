@@ -109,7 +109,8 @@ WorldScale scale_of(const CheckpointState& s, const Model& model) {
           s.start_particles,
           s.has_bonds,
           grain_for_limit({s.grain}, s.overlap_limit, model.limits.overlap_error),
-          grain_for_limit({s.heat_grain}, s.overlap_limit, model.limits.overlap_error)};
+          grain_for_limit({s.heat_grain}, s.overlap_limit, model.limits.overlap_error),
+          num_carried(s)};
 }
 
 template <int Dim>

@@ -87,7 +87,7 @@ Simulation::Engine& Simulation::between_steps(const char* call) const {
   Engine& engine = this->engine();
   if (!is_mpi_initialized())
     throw RunError(fmt::format("Simulation::{}: MPI has ended: call it before that", call));
-  if (!engine.is_in_step_) return engine;
+  if (!engine.is_in_step_ && engine.telling_ == Engine::Telling::Nothing) return engine;
   if (engine.failure_)
     throw RunError(
         fmt::format("Simulation::{}: the run failed in the midst of step {}: begin again "
@@ -95,6 +95,11 @@ Simulation::Engine& Simulation::between_steps(const char* call) const {
                     call, engine.step_));
   throw std::logic_error(
       fmt::format("Simulation::{}: called from within run(): call it after run() returned", call));
+}
+
+Simulation::Engine& Simulation::at_rest(const char* call) const {
+  Engine& engine = this->engine();
+  return engine.telling_ == Engine::Telling::OnOneThread ? engine : between_steps(call);
 }
 
 std::int64_t Simulation::run(std::int64_t num_steps) {
@@ -109,6 +114,9 @@ bool Simulation::stopped() const {
 }
 bool Simulation::is_over() const {
   return engine().is_over_;
+}
+bool Simulation::is_in_callback() const {
+  return engine().is_in_step_ || engine().telling_ != Engine::Telling::Nothing;
 }
 std::int64_t Simulation::step() const {
   return engine().step_;
@@ -146,17 +154,14 @@ std::int64_t Simulation::num_particles() const {
 const LeftDomain& Simulation::left_domain() const {
   return engine().population_.left;
 }
-void Simulation::on_departure(std::function<void(std::span<const Departure>)> tell) {
-  engine().population_.tell_departures = std::move(tell);
-}
 std::vector<Note> Simulation::take_notes() {
   return engine().notes_.take();
 }
 void Simulation::apply_forces(const std::function<Vec3(const OwnedParticle&)>& force) {
-  between_steps("apply_forces").apply_forces(force);
+  at_rest("apply_forces").apply_forces(force);
 }
 void Simulation::clear_forces() {
-  between_steps("clear_forces").clear_forces();
+  at_rest("clear_forces").clear_forces();
 }
 EnergyBudget Simulation::energy_budget(const Measures& measured) const {
   if (!model().output.energy)

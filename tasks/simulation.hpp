@@ -17,8 +17,10 @@
 #include <barchan/core/brick/measures.hpp>
 #include <barchan/core/links/walls.hpp>
 #include <barchan/core/model/model.hpp>
+#include <barchan/core/particles/caller_fields.hpp>
 #include <barchan/tasks/notes.hpp>
 #include <barchan/tasks/particle_view.hpp>
+#include <barchan/tasks/run_events.hpp>
 #include <barchan/tasks/run_options.hpp>
 #include <barchan/tasks/state.hpp>
 #include <barchan/tasks/wall_control.hpp>
@@ -124,6 +126,7 @@ class Simulation {
   [[nodiscard]] bool stopped() const;
   [[nodiscard]] bool is_over() const;  ///< the last stage has ended, and with it the run
 
+  [[nodiscard]] bool is_in_callback() const;  ///< of run()
   [[nodiscard]] std::int64_t step() const;
   [[nodiscard]] double time() const;  ///< [s]
   [[nodiscard]] int stage() const;    ///< index into Model::stages
@@ -140,11 +143,34 @@ class Simulation {
   [[nodiscard]] std::int64_t num_owned() const;
   [[nodiscard]] std::int64_t num_particles() const;     ///< on all ranks, now
   [[nodiscard]] const LeftDomain& left_domain() const;  ///< on all ranks; local
-  /// Calls `tell` on rank 0, within run(), with particles that left the domain, in order of their
-  /// ids: before they are removed, or before run() throws. What it throws every rank throws.
-  void on_departure(std::function<void(std::span<const Departure>)> tell);
   /// Events on this rank since the last call; rank 0 has those that all ranks know. Local.
   [[nodiscard]] std::vector<Note> take_notes();
+
+  // ---- callbacks within run(), between two steps. What one throws on some rank ends the run on
+  // every rank, between the same two steps, with one AgreedError that has its words. They are
+  // called on the thread that called run(), on_step's on all threads. Meanwhile owned(), loads(),
+  // field(), set_loads(), apply_forces() and what only tells may be called, from on_step's nothing
+  // but the view; all else is std::logic_error. Each replaces the former one; an empty one ends it.
+  // Collective but for on_departure; a rank may give an empty one while others do not. `every`: 1
+  // or more, the same on every rank, else InputError.
+  /// Before every step whose number is a multiple of `every`: for the view of every brick, on as
+  /// many threads as there are. Loads that it writes act in this step. Costs a reduction each time.
+  void on_step(std::int64_t every, std::function<void(const ParticleView&)> visit);
+  /// The same, with the views of all bricks of this rank at once.
+  void on_step_together(std::int64_t every,
+                        std::function<void(std::span<const ParticleView>)> visit);
+  /// After such steps, on every rank.
+  void on_progress(std::int64_t every, std::function<void(const RunProgress&)> tell);
+  /// Instead of take_notes(). After every 16th step and before run() returns, as what follows.
+  void on_note(std::function<void(const Note&)> tell);
+  /// On rank 0: checkpoints that are complete, or could not be written.
+  void on_checkpoint(std::function<void(const CheckpointEvent&)> tell);
+  /// On rank 0: bonds that broke, in order of steps and ids; those on all ranks.
+  void on_bond_breaks(std::function<void(std::span<const BondBreak>)> tell);
+  /// On rank 0, with particles that left the domain, in order of their ids: before they are
+  /// removed, or before run() throws. Nothing may be called but what only tells.
+  void on_departure(std::function<void(std::span<const Departure>)> tell);
+
   /// Sets a force [N] on every owned particle, added in every step until it is set again or
   /// cleared.
   void apply_forces(const std::function<Vec3(const OwnedParticle&)>& force);
@@ -177,6 +203,22 @@ class Simulation {
   /// Errors: InputError, the same on every rank, and nothing is set: an id that there is not, a
   /// fixed particle that is to move, other lengths, a number that is not finite
   void scatter(ParticleField field, std::span<const std::int64_t> ids,
+               std::span<const double> values);
+  /// A field of the caller's own: so many numbers of every particle, which travel with it through
+  /// rebuilds, states and checkpoints, and which barchan never reads. They are 0 at first, and of
+  /// newcomers. Collective; the same on every rank.
+  /// @param name  letters, digits and _
+  /// @return false: there is such a field, as after a restart, and it keeps its values
+  /// Errors: InputError, and nothing is changed: no name, components below 1 or other ones than the
+  /// field has, more numbers a particle than CallerFields allows
+  bool add_field(const std::string& name, int components = 1);
+  [[nodiscard]] const std::vector<CallerField>& fields() const;
+  /// Such a field, to read and write in place, brick by brick as owned(). Local.
+  /// Errors: std::invalid_argument, here and below: there is no such field
+  [[nodiscard]] std::vector<FieldView> field(const std::string& name);
+  [[nodiscard]] Gathered gather(const std::string& field);  ///< as above. Collective.
+  /// As above; as many numbers a particle as the field has components. Collective.
+  void scatter(const std::string& field, std::span<const std::int64_t> ids,
                std::span<const double> values);
   /// Particles that come now, with velocities half a step behind their positions, no larger than
   /// the largest of the start. @param newcomers  the same on every rank. Collective.
@@ -261,6 +303,7 @@ class Simulation {
   explicit Simulation(std::unique_ptr<Engine> engine);
   [[nodiscard]] Engine& engine() const;
   [[nodiscard]] Engine& between_steps(const char* call) const;  ///< where `call` may be made
+  [[nodiscard]] Engine& at_rest(const char* call) const;        ///< callbacks may, too
   std::unique_ptr<Engine> engine_;
 };
 

@@ -44,7 +44,7 @@ std::vector<LinkForce> Simulation::links(LinkKind kind) {
 }
 
 std::vector<ParticleView> Simulation::owned() {
-  return between_steps("owned").owned();
+  return at_rest("owned").owned();
 }
 int Simulation::num_bricks() const {
   return engine().num_bricks();
@@ -53,7 +53,7 @@ std::uint64_t Simulation::generation() const {
   return engine().generation_.value();
 }
 void Simulation::for_each_view(const std::function<void(const ParticleView&)>& visit) {
-  between_steps("for_each_view").for_each_view(visit);
+  at_rest("for_each_view").for_each_view(visit);
 }
 std::shared_ptr<const void> Simulation::release_arrays() {
   return engine().release_arrays();
@@ -62,11 +62,11 @@ std::int64_t Simulation::highest_id() {
   return between_steps("highest_id").highest_id();
 }
 std::vector<LoadView> Simulation::loads() {
-  return between_steps("loads").loads();
+  return at_rest("loads").loads();
 }
 
 void Simulation::set_loads(const Loads& loads) {
-  Engine& engine = between_steps("set_loads");
+  Engine& engine = at_rest("set_loads");
   const auto require = [&](std::span<const double> numbers, const char* what) {
     if (numbers.size() != 3 * loads.ids.size())
       throw std::invalid_argument(

@@ -185,7 +185,7 @@ std::vector<Departure> Watch<Dim>::departures(std::int64_t step) const {
   std::memcpy(found.data(), bytes.data(), bytes.size());
   std::sort(found.begin(), found.end(),
             [](const Departure& p, const Departure& q) { return p.id < q.id; });
-  agree(communicator, [&] {
+  agree_between_steps(communicator, fmt::format("step {}: on_departure", step), [&] {
     if (communicator.is_root() && population_.tell_departures) population_.tell_departures(found);
   });
   return found;

@@ -13,7 +13,8 @@ WorldScale scale_of(const Model& model, const ParticleSet& particles) {
           static_cast<std::int64_t>(particles.particles.size()),
           !particles.bonds.empty(),
           force_grain(model, particles),
-          heat_grain(model, particles)};
+          heat_grain(model, particles),
+          0};
 }
 
 template <int Dim>
@@ -25,6 +26,7 @@ World<Dim> make_world(const Model& model, const WorldScale& scale, VectorWidth w
   world.accounts = model.output.energy;
   world.search = model.search.kind;
   world.num_particles = scale.num_particles;
+  world.num_carried = scale.num_carried;
   world.grid = Grid<Dim>(model.domain, scale.reach);
   world.laws = LawTable(model.contacts);
   world.grain = scale.grain;

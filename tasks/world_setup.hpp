@@ -14,6 +14,7 @@ struct WorldScale {
   std::int64_t num_particles = 0;
   bool has_bonds = false;
   ForceGrain grain, heat_grain;
+  int num_carried = 0;  ///< by a particle, in fields of the caller's own
 };
 
 /// Of the start of a run. Pure.

@@ -3,25 +3,19 @@
 #include <array>
 #include <vector>
 
-#include "handle.hpp"
+#include "arrays.hpp"
 
 namespace {
 
 using barchan::ParticleView;
 using barchan::Simulation;
 using barchan::StridedSpan;
+using barchan::c::brick_of;
+using barchan::c::kNowhere;
 using barchan::c::require;
 using barchan::c::with;
 
-constexpr const char* kNowhere = "a pointer to the result is NULL";
-
-template <class View>
-const View& brick_of(const std::vector<View>& views, int brick) {
-  require(brick >= 0 && static_cast<std::size_t>(brick) < views.size(),
-          "there is no such brick: they count from 0 to num_bricks - 1");
-  return views[static_cast<std::size_t>(brick)];
-}
-
+/// Errors: std::invalid_argument
 StridedSpan<const double> span_of(const ParticleView& view, int field) {
   switch (field) {
     case BARCHAN_POSITION:
@@ -37,7 +31,7 @@ StridedSpan<const double> span_of(const ParticleView& view, int field) {
     case BARCHAN_DENSITY:
       return {view.densities().data(), view.size(), 1, 1};
     default:
-      throw std::invalid_argument("barchan_get_view: this field is no array");
+      throw std::invalid_argument("this field is no array");
   }
 }
 
@@ -46,6 +40,12 @@ void put(const barchan::Vec3& from, double* to) {
 }
 
 }  // namespace
+
+void barchan::c::give(const ParticleView& from, int field, barchan_view* to) {
+  require(to != nullptr, kNowhere);
+  const auto span = span_of(from, field);
+  *to = {span.data(), static_cast<int64_t>(span.size()), span.stride(), span.width()};
+}
 
 extern "C" {
 
@@ -74,6 +74,14 @@ int barchan_write_checkpoint(barchan_sim* sim, const char* folder) {
     s.save_checkpoint();
     if (!s.finish_checkpoints())
       throw barchan::CommonError(std::string("the checkpoint could not be written to ") + folder);
+  });
+}
+
+int barchan_keep_checkpoints(barchan_sim* sim, const char* folder, int64_t every_steps,
+                             double every_seconds, int keep) {
+  return with(sim, [&](Simulation& s) {
+    require(folder != nullptr, "barchan_keep_checkpoints: the folder is NULL");
+    s.keep_checkpoints(folder, {every_steps, every_seconds, keep});
   });
 }
 
@@ -118,38 +126,24 @@ int barchan_digest(barchan_sim* sim, uint64_t* digest) {
 }
 
 int barchan_get_view(barchan_sim* sim, int brick, int field, barchan_view* view) {
-  return with(sim, [&](Simulation& s) {
-    require(view != nullptr, kNowhere);
-    const auto span = span_of(brick_of(s.owned(), brick), field);
-    *view = {span.data(), static_cast<int64_t>(span.size()), span.stride(), span.width()};
-  });
+  return with(sim,
+              [&](Simulation& s) { barchan::c::give(brick_of(s.owned(), brick), field, view); });
 }
 
 int barchan_get_ids(barchan_sim* sim, int brick, const int64_t** ids, int64_t* size) {
-  return with(sim, [&](Simulation& s) {
-    require(ids != nullptr && size != nullptr, kNowhere);
-    const auto span = brick_of(s.owned(), brick).ids();
-    *ids = span.data();
-    *size = static_cast<int64_t>(span.size());
-  });
+  return with(
+      sim, [&](Simulation& s) { barchan::c::give(brick_of(s.owned(), brick).ids(), ids, size); });
 }
 
 int barchan_get_types(barchan_sim* sim, int brick, const uint8_t** types, int64_t* size) {
   return with(sim, [&](Simulation& s) {
-    require(types != nullptr && size != nullptr, kNowhere);
-    const auto span = brick_of(s.owned(), brick).types();
-    *types = span.data();
-    *size = static_cast<int64_t>(span.size());
+    barchan::c::give(brick_of(s.owned(), brick).types(), types, size);
   });
 }
 
 int barchan_get_loads(barchan_sim* sim, int brick, barchan_loads* loads) {
-  return with(sim, [&](Simulation& s) {
-    require(loads != nullptr, kNowhere);
-    const barchan::LoadView view = brick_of(s.loads(), brick);
-    *loads = {view.forces().data(), view.torques_by_radius().data(),
-              static_cast<int64_t>(view.size()), view.forces().stride()};
-  });
+  return with(sim,
+              [&](Simulation& s) { barchan::c::give(brick_of(s.owned(), brick).loads(), loads); });
 }
 
 int barchan_get_links(barchan_sim* sim, int kind, int64_t room, barchan_link* links,
@@ -184,6 +178,13 @@ int barchan_get_wall(barchan_sim* sim, const char* wall, barchan_wall* state) {
     put(w.torque, state->torque);
     state->work = w.work;
     state->is_active = w.is_active ? 1 : 0;
+  });
+}
+
+int barchan_get_wall_normal(barchan_sim* sim, const char* wall, double normal[3]) {
+  return with(sim, [&](Simulation& s) {
+    require(wall != nullptr && normal != nullptr, kNowhere);
+    put(s.wall(wall).normal(), normal);
   });
 }
 

@@ -12,12 +12,13 @@
 #include <barchan/core/deck/overrides.hpp>
 #include <barchan/core/model/contact_numbers.hpp>
 
-#include "handle.hpp"
+#include "arrays.hpp"
 
 namespace {
 
 using barchan::Simulation;
 using barchan::Vec3;
+using barchan::c::list_of;
 using barchan::c::require;
 using barchan::c::with;
 
@@ -29,12 +30,6 @@ barchan::ParticleField field_of(int field) {
   require(field >= 0 && static_cast<std::size_t>(field) < kFields.size(),
           "this field is not to be gathered or scattered");
   return kFields[static_cast<std::size_t>(field)];
-}
-
-template <class T>
-std::span<const T> list_of(const T* data, std::int64_t count, const char* what) {
-  require(count >= 0 && (data != nullptr || count == 0), what);
-  return {data, static_cast<std::size_t>(count)};
 }
 
 Vec3 vector_of(const double* v) {
@@ -77,14 +72,7 @@ int barchan_clear_loads(barchan_sim* sim) {
 int barchan_gather(barchan_sim* sim, int field, int64_t room, int64_t* ids, double* values,
                    int64_t* count) {
   return with(sim, [&](Simulation& s) {
-    const barchan::Gathered all = s.gather(field_of(field));
-    if (!s.communicator().is_root()) return;
-    const auto n = static_cast<std::int64_t>(all.ids.size());
-    if (count != nullptr) *count = n;
-    if (ids == nullptr && values == nullptr) return;
-    require(room >= n, "barchan_gather: there is no room for all particles");
-    if (ids != nullptr) std::copy(all.ids.begin(), all.ids.end(), ids);
-    if (values != nullptr) std::copy(all.values.begin(), all.values.end(), values);
+    barchan::c::give(s, s.gather(field_of(field)), {room, ids, values, count});
   });
 }
 

@@ -4,6 +4,7 @@
 #include <exception>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include <barchan/core/base/error.hpp>
@@ -15,7 +16,8 @@
 struct barchan_sim {
   explicit barchan_sim(barchan::Simulation&& of) : simulation(std::move(of)) {}
   barchan::Simulation simulation;
-  std::atomic<bool> is_busy{false};  ///< some thread is in a call
+  std::atomic<bool> is_busy{false};       ///< some thread is in a call
+  std::atomic<std::thread::id> caller{};  ///< which; its callbacks may call, too
 };
 
 struct barchan_state {
@@ -60,10 +62,14 @@ int with(barchan_sim* sim, Work&& work) {
   if (sim == nullptr) return fail(BARCHAN_WRONG_CALL, "the simulation is NULL: open one first");
   if (!is_known(sim))
     return fail(BARCHAN_WRONG_CALL, "there is no such simulation: it was closed, or never opened");
+  if (sim->is_busy && sim->caller == std::this_thread::get_id())  // from within a callback
+    return guarded([&] { work(sim->simulation); });
   if (sim->is_busy.exchange(true))
     return fail(BARCHAN_WRONG_CALL,
                 "another thread is in a call of this simulation: one thread at a time");
+  sim->caller = std::this_thread::get_id();
   const int code = guarded([&] { work(sim->simulation); });
+  sim->caller = std::thread::id();
   sim->is_busy = false;
   return code;
 }

@@ -128,7 +128,9 @@ int barchan_restore(const char* deck, const char* settings, const char* checkpoi
 }
 
 int barchan_close(barchan_sim* sim) {
-  const int code = barchan::c::with(sim, [](const barchan::Simulation&) {});
+  const int code = barchan::c::with(sim, [](const barchan::Simulation& s) {
+    require(!s.is_in_callback(), "a callback may not close its simulation");
+  });
   if (code != BARCHAN_OK) return code;
   barchan::c::forget(sim);
   return guarded([&] { delete sim; });

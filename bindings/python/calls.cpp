@@ -70,7 +70,8 @@ py::dict wall(Handle& h, const std::string& name) {
                   "torque"_a = three_of(w.torque), "work"_a = w.work, "is_active"_a = w.is_active);
 }
 
-py::object gather(Handle& h, ParticleField field) {
+template <class Field>
+py::object gather(Handle& h, const Field& field, int width) {
   Gathered all;
   const bool is_root = h.call([&](Simulation& s) {
     all = s.gather(field);
@@ -78,7 +79,6 @@ py::object gather(Handle& h, ParticleField field) {
   });
   if (!is_root) return py::none();
   const auto n = static_cast<py::ssize_t>(all.ids.size());
-  const int width = width_of(field);
   Ids ids(n, all.ids.data());
   if (width == 1) return py::make_tuple(ids, Reals(n, all.values.data()));
   return py::make_tuple(ids, Reals({n, py::ssize_t{width}}, all.values.data()));
@@ -154,21 +154,42 @@ void define_views(py::module_& m) {
       .def_property_readonly("radii", [](const B& b) { return b.array(b.view().radii()); })
       .def_property_readonly("inverse_masses",
                              [](const B& b) { return b.array(b.view().inverse_masses()); })
-      .def_property_readonly("forces", [](const B& b) { return b.loads_array(b.loads().forces()); })
+      .def("field",
+           [](const B& b, const std::string& name) { return b.writeable_array(b.field(name)); })
+      .def_property_readonly("forces",
+                             [](const B& b) { return b.writeable_array(b.loads().forces()); })
       .def_property_readonly("torques_by_radius", [](const B& b) {
-        return b.loads_array(b.loads().torques_by_radius());
+        return b.writeable_array(b.loads().torques_by_radius());
       });
 }
 
 void define_simulation(py::module_& m) {
   using S = Simulation;
-  py::class_<Handle>(m, "Simulation")
-      .def("info", &info)
+  py::class_<Handle> simulation(m, "Simulation");
+  define_events(simulation);
+  simulation.def("info", &info)
       .def("owned", &Handle::owned)
       .def("close", &Handle::close)
       .def("measure", &measure)
       .def("wall", &wall)
-      .def("gather", &gather)
+      .def("gather",
+           [](Handle& h, ParticleField field) { return gather(h, field, width_of(field)); })
+      .def("gather_field", &gather<std::string>)
+      .def("add_field",
+           [](Handle& h, const std::string& name, int components) {
+             return h.change([&](S& s) { return s.add_field(name, components); });
+           })
+      .def("fields",
+           [](Handle& h) {
+             std::map<std::string, int> components;
+             for (const CallerField& field : h.call([](S& s) { return s.fields(); }))
+               components[field.name] = field.components;
+             return components;
+           })
+      .def("scatter_field",
+           [](Handle& h, const std::string& name, const Ids& ids, const Reals& values) {
+             h.call([&](S& s) { s.scatter(name, span_of(ids), span_of(values)); });
+           })
       .def("links", &links)
       .def("set_time_step",
            [](Handle& h, double dt) { h.change([&](S& s) { s.set_time_step(dt); }); })
@@ -230,6 +251,11 @@ void define_simulation(py::module_& m) {
                s.save_checkpoint();
                return s.finish_checkpoints();
              });
+           })
+      .def("keep_checkpoints",
+           [](Handle& h, const std::string& folder, std::int64_t every_steps, double every_seconds,
+              int keep) {
+             h.call([&](S& s) { s.keep_checkpoints(folder, {every_steps, every_seconds, keep}); });
            })
       .def("take_notes", [](Handle& h) {
         std::vector<std::string> texts;

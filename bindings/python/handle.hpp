@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -23,7 +24,7 @@ namespace py = pybind11;
 struct Moment {
   std::shared_ptr<Simulation> simulation;
   std::shared_ptr<const void> released;
-  std::vector<py::weakref> loads;  ///< arrays that may be written until the moment is over
+  std::vector<py::weakref> writeable;  ///< arrays that may be written until the moment is over
   bool is_over = false;
 };
 
@@ -55,26 +56,31 @@ class Handle {
     return work(*simulation_);
   }
   [[nodiscard]] std::vector<BrickOfMoment> owned();
+  /// Within a callback of run(): the bricks for it, and its end.
+  [[nodiscard]] std::vector<BrickOfMoment> bricks_of_moment();
+  void end_moment();
   void close();
   [[nodiscard]] bool is_closed() const { return simulation_ == nullptr; }
 
  private:
-  /// One thread at a time. Errors: std::runtime_error
+  /// One thread at a time, and callbacks of run() on its thread. Errors: std::runtime_error
   class Turn {
    public:
     explicit Turn(Handle& handle);
-    ~Turn() { handle_.is_busy_ = false; }
+    ~Turn();
     Turn(const Turn&) = delete;
     Turn& operator=(const Turn&) = delete;
 
    private:
+    void end();
     Handle& handle_;
+    bool is_nested_ = false;
   };
-  void end_moment();
 
   std::shared_ptr<Simulation> simulation_;
   std::shared_ptr<Moment> moment_;  ///< null: nobody has asked for arrays since the last change
   std::atomic<bool> is_busy_{false};
+  std::atomic<std::thread::id> caller_{};  ///< of the call that keeps it busy
 };
 
 /// Particles of a brick at a moment.
@@ -85,10 +91,13 @@ class BrickOfMoment {
 
   [[nodiscard]] const ParticleView& view() const;  ///< Errors: StaleView
   [[nodiscard]] LoadView loads() const;            ///< Errors: StaleView
+  /// Errors: StaleView; std::invalid_argument: there is no such field
+  [[nodiscard]] StridedSpan<double> field(const std::string& name) const;
   /// (particles, components); of one component (particles).
   template <class T>
   [[nodiscard]] py::array array(const StridedSpan<const T>& span, bool is_writeable = false) const;
-  [[nodiscard]] py::array loads_array(const StridedSpan<double>& span) const;
+  /// Until the moment is over.
+  [[nodiscard]] py::array writeable_array(const StridedSpan<double>& span) const;
 
  private:
   [[nodiscard]] py::capsule keeper() const;
@@ -113,5 +122,6 @@ py::array BrickOfMoment::array(const StridedSpan<const T>& span, bool is_writeab
 }
 
 void define_calls(py::module_& module);
+void define_events(py::class_<Handle>& simulation);
 
 }  // namespace barchan::python

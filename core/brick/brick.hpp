@@ -95,7 +95,10 @@ struct Brick {
   Passage passage;
   double top_flow = 0.0;  ///< largest sum of the sizes of a row's heat flows [W]
 
-  explicit Brick(World<Dim>& of) : world(&of) { store.has_heat = of.heat.is_on; }
+  explicit Brick(World<Dim>& of) : world(&of) {
+    store.has_heat = of.heat.is_on;
+    store.num_carried = of.num_carried;
+  }
   Band& band(Side side) { return bands[index_of(side)]; }
   [[nodiscard]] const Band& band(Side side) const { return bands[index_of(side)]; }
   /// Ties it to one more brick, the left ones first. Before the brick owns anything.

@@ -23,6 +23,10 @@ void save_particles(const ParticleStore<Dim>& store, CheckpointShare& share) {
       std::copy_n(field.of(store, row), width,
                   column.data() + static_cast<std::size_t>(row) * width);
   });
+  const std::size_t carried =
+      static_cast<std::size_t>(n) * static_cast<std::size_t>(store.num_carried);
+  share.carried.assign(store.carried.begin(),
+                       store.carried.begin() + static_cast<std::ptrdiff_t>(carried));
 }
 
 /// @pre room for the rows, zeros in them
@@ -42,6 +46,7 @@ void restore_particles(const CheckpointShare& share, ParticleStore<Dim>& store) 
       std::copy_n(column.data() + static_cast<std::size_t>(row) * width, width,
                   field.of(store, row));
   });
+  std::copy(share.carried.begin(), share.carried.end(), store.carried.begin());
   for (std::int32_t row = 0; row < n; ++row) store.set_radius(row, store.radius(row));
 }
 

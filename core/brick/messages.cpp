@@ -74,6 +74,7 @@ void encode(const Migration<Dim>& migration, std::vector<std::byte>& message) {
   out.put_counted(migration.contacts.numbers);
   out.put_counted(migration.walls);
   out.put_counted(migration.bonds);
+  if (!migration.carried.empty()) out.put_counted(migration.carried);
 }
 
 template <int Dim>
@@ -87,7 +88,10 @@ Migration<Dim> decode_migration(std::span<const std::byte> message, const World<
   m.contacts.numbers = in.take_counted<double>();
   m.walls = in.take_counted<WallRecord<Dim>>();
   m.bonds = in.take_counted<BondRecord<Dim>>();
+  if (world.num_carried > 0 && !m.particles.empty()) m.carried = in.take_counted<double>();
   in.finish();
+  if (m.carried.size() != m.particles.size() * static_cast<std::size_t>(world.num_carried))
+    refuse("particles that carry another number of numbers");
   for (const auto& p : m.particles) {
     check(p, world);
     if (!box.contains(cell_of_key(world.grid, key_of(p))))

@@ -45,6 +45,7 @@ struct BondRecord {
 template <int Dim>
 struct Migration {
   std::vector<RowRecord<Dim>> particles;
+  std::vector<double> carried;  ///< by them, World::num_carried each
   HistoryTable<LooseContact> contacts;
   std::vector<WallRecord<Dim>> walls;
   std::vector<BondRecord<Dim>> bonds;

@@ -123,9 +123,11 @@ void Rebuild<Dim>::find_leavers(std::vector<Migration<Dim>>& out) {
     const bool is_gone = leavers_.is_removed(store.id[at]) || carry_.loses(Loss::Particle);
     leavers_.way[at] = is_gone ? std::int8_t{Leavers::Gone} : way_of(cell, store.id[at]);
     if (!leavers_.leaves(i)) continue;
-    auto& particles = out[static_cast<std::size_t>(leavers_.way[at])].particles;
-    leavers_.number[at] = static_cast<std::int32_t>(particles.size());
-    particles.emplace_back().take(store, i);
+    Migration<Dim>& leaving = out[static_cast<std::size_t>(leavers_.way[at])];
+    leavers_.number[at] = static_cast<std::int32_t>(leaving.particles.size());
+    leaving.particles.emplace_back().take(store, i);
+    const auto numbers = store.carried_by(i);
+    leaving.carried.insert(leaving.carried.end(), numbers.begin(), numbers.end());
   }
 }
 
@@ -160,6 +162,8 @@ void Rebuild<Dim>::absorb(std::span<const std::byte> message) {
   leavers_.way.resize(static_cast<std::size_t>(end), Leavers::Stays);
   for (std::size_t p = 0; p < in.particles.size(); ++p)
     in.particles[p].put(store, first + static_cast<std::int32_t>(p));
+  if (!in.carried.empty())
+    std::copy(in.carried.begin(), in.carried.end(), store.carried_by(first).begin());
   for (std::size_t k = 0; k < in.contacts.size(); ++k) {
     const LooseContact& c = in.contacts.rows[k];
     std::copy_n(in.contacts.history(k), in.contacts.length,

@@ -76,6 +76,7 @@ void Step<Dim>::begin(const StepFrame& frame) {
     for (WallSums& sums : brick_.wall_sums) sums.work.carry();
     for (ExactSum& sum : brick_.works.sums) sum.carry();
   }
+  brick_.bonds.begin_step(frame.step);
   if (!brick_.bonds.empty()) compute_bonds(BondSet<Dim>::Owned);
 }
 

@@ -44,6 +44,7 @@ struct World {
   double last_dt = 0.0;   ///< of the step before; before the first one dt [s]
   bool accounts = false;  ///< for where energy goes (energy_works.hpp)
   std::int64_t num_particles = 0;
+  std::int32_t num_carried = 0;  ///< numbers of a particle in fields of the caller's own
 
   /// In a step, with lists of a skin. Of two that move by more each, lists may lack one that was
   /// passed (passage.hpp) [m].

@@ -84,6 +84,8 @@ void check_particles(const CheckpointShare& s, const ShareLimits& limits, const 
     if (!field.array.is_optional || !values.empty())
       check.size(column, values.size(), rows * static_cast<std::size_t>(field.width));
   });
+  check.size(CheckpointColumn::Carried, s.carried.size(),
+             n * static_cast<std::size_t>(limits.num_carried));
   for (const auto column :
        {&CheckpointShare::positions, &CheckpointShare::radii, &CheckpointShare::temperatures})
     check.finite(column_of(column), s.*column);

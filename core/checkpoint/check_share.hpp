@@ -14,6 +14,7 @@ struct ShareLimits {
   std::size_t num_materials = 0, num_walls = 0, num_bond_laws = 0;
   int law = 0;  ///< of contact: its place in the list
   bool has_heat = false;
+  int num_carried = 0;  ///< numbers of a particle in fields of the caller's own
 };
 
 /// Of a share: broken bonds, the work of walls, and where energy has gone.

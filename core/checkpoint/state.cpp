@@ -49,6 +49,7 @@ CheckpointState take_state(ByteReader& in) {
     s.stage_since = in.take<TimePoint>();
     s.last_dt = in.take<double>();
   }
+  if (!in.empty()) s.fields = in.take_counted<CallerField::Saved>();
   in.finish();
   return s;
 }
@@ -109,6 +110,12 @@ std::uint64_t hash_of(Put&& put_part) {
 
 }  // namespace
 
+int num_carried(const CheckpointState& state) {
+  int sum = 0;
+  for (const CallerField::Saved& field : state.fields) sum += field.components;
+  return sum;
+}
+
 std::vector<std::byte> encode(const CheckpointState& s) {
   std::vector<std::byte> bytes;
   ByteWriter out(bytes);
@@ -127,11 +134,12 @@ std::vector<std::byte> encode(const CheckpointState& s) {
   out.put(s.left);
   out.put_counted(s.walls);
   out.put_counted(s.fingerprint);
-  if (s.last_dt > 0.0) {
+  if (s.last_dt > 0.0 || !s.fields.empty()) {
     out.put(s.since);
     out.put(s.stage_since);
     out.put(s.last_dt);
   }
+  if (!s.fields.empty()) out.put_counted(s.fields);
   return bytes;
 }
 
@@ -147,15 +155,15 @@ CheckpointState decode_state(std::span<const std::byte> bytes, const std::string
   const auto is_before = [&](const TimePoint& p) {
     return std::isfinite(p.time) && p.step >= 0 && p.step <= state.step;
   };
-  const bool is_sane = state.step >= 0 && state.stage >= 0 && state.stage_begin >= 0 &&
-                       state.stage_begin <= state.step && state.skin >= 0.0 &&
-                       std::isfinite(state.skin) && positive(state.reach) &&
-                       state.start_particles >= 0 && positive(state.grain) &&
-                       positive(state.heat_grain) && state.overlap_limit > 0.0 &&
-                       state.look.step >= -1 && state.look.step <= state.step &&
-                       (state.look.step < 0 || state.step - state.look.step < kEventSteps) &&
-                       is_before(state.since) && is_before(state.stage_since) &&
-                       state.last_dt >= 0.0 && std::isfinite(state.last_dt);
+  const bool is_sane =
+      state.step >= 0 && state.stage >= 0 && state.stage_begin >= 0 &&
+      state.stage_begin <= state.step && state.skin >= 0.0 && std::isfinite(state.skin) &&
+      positive(state.reach) && state.start_particles >= 0 && positive(state.grain) &&
+      positive(state.heat_grain) && state.overlap_limit > 0.0 && state.look.step >= -1 &&
+      state.look.step <= state.step &&
+      (state.look.step < 0 || state.step - state.look.step < kEventSteps) &&
+      is_before(state.since) && is_before(state.stage_since) && state.last_dt >= 0.0 &&
+      std::isfinite(state.last_dt) && CallerFields().restore(state.fields);
   if (!is_sane) refuse(file, "the state is not valid", "take another checkpoint");
   return state;
 }

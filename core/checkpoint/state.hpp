@@ -9,6 +9,7 @@
 
 #include <barchan/core/brick/departure.hpp>
 #include <barchan/core/model/model.hpp>
+#include <barchan/core/particles/caller_fields.hpp>
 
 namespace barchan {
 
@@ -55,8 +56,12 @@ struct CheckpointState {
   TimePoint since, stage_since;
   double last_dt = 0.0;  ///< of the step before [s]
   std::vector<SavedWall> walls;
+  std::vector<CallerField::Saved> fields;  ///< of the caller's own
   std::vector<std::uint64_t> fingerprint;  ///< of the model, see below
 };
+
+/// Numbers of a particle in fields of the caller's own.
+[[nodiscard]] int num_carried(const CheckpointState& state);
 
 [[nodiscard]] std::vector<std::byte> encode(const CheckpointState& state);
 /// Errors: InputError naming `file`, for bytes that make no state.

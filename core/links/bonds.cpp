@@ -138,10 +138,17 @@ std::span<const std::int32_t> BondSet<Dim>::compute(Group group, const ParticleS
     if (respond(b, store, laws[static_cast<std::size_t>(bond.law)], box, dt)) continue;
     broken_[static_cast<std::size_t>(b)] = 1;
     force_[static_cast<std::size_t>(b)] = {};
-    if (store.is_owned(end_a(b))) ++num_broken_;
+    if (store.is_owned(end_a(b))) count_break(b);
     just_broken_.push_back(b);
   }
   return just_broken_;
+}
+
+template <int Dim>
+void BondSet<Dim>::count_break(std::int32_t bond) {
+  ++num_broken_;
+  const Bond<Dim>& its = bonds_[static_cast<std::size_t>(bond)];
+  if (keeps_breaks_) breaks_.push_back({step_, its.id_a, its.id_b});
 }
 
 template <int Dim>
@@ -176,7 +183,7 @@ void BondSet<Dim>::import_group(Group group, const ParticleStore<Dim>& store, co
       in += record.size();
     }
     const bool broke = *in++ != 0.0;
-    if (broke && !is_broken(b) && store.is_owned(end_a(b))) ++num_broken_;
+    if (broke && !is_broken(b) && store.is_owned(end_a(b))) count_break(b);
     broken_[static_cast<std::size_t>(b)] = broke ? 1 : 0;
   }
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <barchan/core/kernels/pair_job.hpp>
+#include <barchan/core/links/bond_break.hpp>
 #include <barchan/core/model/model.hpp>
 #include <barchan/core/particles/particle_store.hpp>
 #include <barchan/core/search/bonded_pairs.hpp>
@@ -99,6 +100,10 @@ class BondSet {
   /// As broken, but not counted: an end has left the domain. Until drop_broken.
   void cancel(std::int32_t bond) { broken_[static_cast<std::size_t>(bond)] = 1; }
   void drop_broken();
+  /// From now on bonds that break are noted where their lower id is owned, or no longer.
+  void keep_breaks(bool keeps) { keeps_breaks_ = keeps; }
+  void begin_step(std::int64_t step) { step_ = step; }  ///< that breaks are noted with
+  [[nodiscard]] std::vector<BondBreak> take_breaks() { return std::exchange(breaks_, {}); }
   /// Owned by their lower id, since the start.
   [[nodiscard]] std::int64_t num_broken() const { return num_broken_; }
   void set_num_broken(std::int64_t n) { num_broken_ = n; }
@@ -124,6 +129,7 @@ class BondSet {
   using Record = std::array<double, Layout<Dim>::kForce>;
 
   void index_known();
+  void count_break(std::int32_t bond);
   bool respond(std::int32_t bond, const ParticleStore<Dim>& store, const BondLaw& law,
                const PeriodicBox& box, double dt);
 
@@ -136,6 +142,9 @@ class BondSet {
   std::vector<std::array<Record, 2>> force_;
   std::vector<std::int32_t> just_broken_;
   std::int64_t num_broken_ = 0;
+  bool keeps_breaks_ = false;
+  std::int64_t step_ = 0;
+  std::vector<BondBreak> breaks_;
 };
 
 /// Stiffnesses of a bond [N/m, N·m/rad] and its section, from the law and the two radii.

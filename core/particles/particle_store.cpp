@@ -1,10 +1,23 @@
 #include <barchan/core/particles/particle_store.hpp>
 
 #include <algorithm>
+#include <utility>
 
 #include <barchan/core/particles/row_record.hpp>
 
 namespace barchan {
+
+template <int Dim>
+void ParticleStore<Dim>::set_num_carried(std::int32_t n) {
+  if (n == num_carried) return;
+  const std::size_t rows = id.size(), before = static_cast<std::size_t>(num_carried),
+                    now = static_cast<std::size_t>(n);
+  AlignedVector<double> wider(rows * now, 0.0);
+  for (std::size_t row = 0; row < rows && before > 0; ++row)
+    std::copy_n(carried.data() + row * before, before, wider.data() + row * now);
+  carried = std::move(wider);
+  num_carried = n;
+}
 
 template <int Dim>
 void ParticleStore<Dim>::resize_rows(std::size_t n) {
@@ -12,6 +25,7 @@ void ParticleStore<Dim>::resize_rows(std::size_t n) {
     if (!array.is_optional && (has_heat || !array.is_of_heat))
       resize_with_room(this->*array.values, n * static_cast<std::size_t>(array.width));
   });
+  if (num_carried > 0) resize_with_room(carried, n * static_cast<std::size_t>(num_carried));
 }
 
 template <int Dim>
@@ -58,9 +72,9 @@ void ParticleStore<Dim>::start_extra(std::int32_t begin, std::int32_t end) {
 
 template <int Dim>
 std::size_t ParticleStore<Dim>::bytes() const {
-  std::size_t bytes =
-      (force.capacity() + reference.capacity() + extra.capacity() + heat_flow.capacity()) *
-      sizeof(double);
+  std::size_t bytes = (force.capacity() + reference.capacity() + extra.capacity() +
+                       heat_flow.capacity() + carried.capacity()) *
+                      sizeof(double);
   for_each_array<Dim>([&](const auto& array) {
     const auto& values = this->*array.values;
     bytes += values.capacity() * sizeof(values[0]);

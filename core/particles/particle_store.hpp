@@ -32,7 +32,9 @@ struct ParticleStore {
   AlignedVector<double> heat_flow;  ///< into each row and the sum of sizes [W]; see heat.hpp
   AlignedVector<double> extra;      ///< force records beside contacts, of rows from extra_begin on
   std::int32_t extra_begin = 0;
-  bool has_heat = false;  ///< particles have temperatures
+  AlignedVector<double> carried;  ///< fields of the caller's own, num_carried a row
+  std::int32_t num_carried = 0;   ///< see caller_fields.hpp
+  bool has_heat = false;          ///< particles have temperatures
   std::int32_t num_owned = 0;
   std::array<std::int32_t, 2> num_ghosts{};
 
@@ -77,6 +79,13 @@ struct ParticleStore {
   [[nodiscard]] double* q(std::int32_t i) {
     return heat_flow.data() + 2 * static_cast<std::size_t>(i);
   }
+  [[nodiscard]] std::span<double> carried_by(std::int32_t i) {
+    const auto n = static_cast<std::size_t>(num_carried);
+    return {carried.data() + n * static_cast<std::size_t>(i), n};
+  }
+  [[nodiscard]] std::span<const double> carried_by(std::int32_t i) const {
+    return const_cast<ParticleStore*>(this)->carried_by(i);
+  }
   /// Of walls, bonds and callers. @pre start_extra() with this row
   [[nodiscard]] double* e(std::int32_t i) {
     return extra.data() + std::size_t{L::kForce} * static_cast<std::size_t>(i - extra_begin);
@@ -91,6 +100,8 @@ struct ParticleStore {
     (Dim == 2 ? x(i) : u(i))[L::kInverseRadius] = 1.0 / radius;
   }
 
+  /// Every row carries so many numbers, the new ones zeros. @pre not fewer than before
+  void set_num_carried(std::int32_t n);
   /// Makes room for so many rows of all that moves with a row, but for optional arrays.
   void resize_rows(std::size_t n);
   /// Makes room for all rows, waste rows set. @param rounder  what sums of forces start from

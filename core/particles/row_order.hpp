@@ -8,7 +8,7 @@
 namespace barchan {
 
 /// Row i gets what row source[i] held, in place: cycle by cycle, so that no second copy of the
-/// particles is needed. `external` moves along if it has as many rows.
+/// particles is needed, but of what they carry. `external` moves along if it has as many rows.
 ///
 /// @param source  a permutation of the store's first rows; the identity afterwards
 template <int Dim>

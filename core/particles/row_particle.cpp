@@ -1,5 +1,7 @@
 #include <barchan/core/particles/row_particle.hpp>
 
+#include <algorithm>
+
 #include <barchan/core/model/mass.hpp>
 #include <barchan/core/particles/row_record.hpp>
 
@@ -21,6 +23,7 @@ void set_particle(ParticleStore<Dim>& store, std::int32_t row, const ParticleDat
   using Store = ParticleStore<Dim>;
   const auto at = static_cast<std::size_t>(row);
   RowRecord<Dim>().put(store, row);
+  std::ranges::fill(store.carried_by(row), 0.0);
   double *x = store.x(row), *v = store.v(row), *u = store.u(row);
   for (int c = 0; c < Dim; ++c) {
     x[c] = p.position[c];

@@ -14,6 +14,8 @@ std::string name_of(CheckpointColumn column) {
       return "totals";
     case C::Outruns:
       return "outruns";
+    case C::Carried:
+      return "fields of the caller";
     case C::ContactIds:
       return "contact ids";
     case C::ContactSprings:

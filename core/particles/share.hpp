@@ -15,6 +15,8 @@ enum class CheckpointColumn : std::uint32_t {
 
   // from 16 on: fields of particles (fields.hpp)
 
+  Carried = 31,  ///< fields of the caller's own; which there are is part of the state
+
   ContactIds = 32,
   ContactSprings = 33,
   WallContactIds = 34,
@@ -42,6 +44,7 @@ struct CheckpointShare {
   std::vector<double> externals;  ///< force records, or none at all
   /// [K]; none at all where heat is off. A temperature is the sum of the two (heat.hpp).
   std::vector<double> temperatures, temperature_remainders;
+  std::vector<double> carried;  ///< fields of the caller's own, as rows have them
 
   std::vector<std::int64_t> contact_ids;  ///< two each, of pairs whose history is not zero
   std::vector<double> contact_springs;    ///< histories, as seen from the first

@@ -14,6 +14,7 @@ void for_each_column(Share& share, Visit&& visit) {
   for_each_field<3>([&](const auto& field) {  // in 2D they are the same but for their widths
     visit(static_cast<C>(field.column), share.*field.saved);
   });
+  visit(C::Carried, share.carried);
   visit(C::ContactIds, share.contact_ids);
   visit(C::ContactSprings, share.contact_springs);
   visit(C::WallContactIds, share.wall_contact_ids);

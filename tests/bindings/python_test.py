@@ -111,6 +111,102 @@ def links(barchan):
         assert np.allclose(floor.normals[:, 1], -1.0) and np.array_equal(sim.walls["floor"].normal, [0, 1, 0])
 
 
+def own_fields(barchan):
+    """They stay with their particles while rows move, and through states and checkpoints."""
+    import numpy as np
+    with barchan.Simulation(DECK, threads=2) as sim:
+        assert sim.fields == {} and sim.add_field("dose") and not sim.add_field("dose") and sim.add_field("path", 3)
+        for brick in sim.owned():
+            brick.field("dose")[:] = 2.0 * brick.ids
+            kept = brick.field("path")
+            kept[:, 1] = brick.ids
+        sim.run(300)
+        raises(ValueError, "read-only", lambda: kept.__setitem__((0, 0), 1.0))
+        state = sim.save()
+        sim.scatter("path", [4, 2], np.ones((2, 3)))
+        ids, doses = sim.gather("dose")
+        paths = sim.gather("path")[1]
+        assert np.array_equal(doses, 2.0 * ids) and paths.shape == (len(ids), 3) and sim.fields == {"dose": 1, "path": 3}
+        assert np.array_equal(paths[[1, 3]], np.ones((2, 3))) and np.array_equal(paths[4:, 1], ids[4:])
+        sim.load(state)
+        assert sim.gather("path")[1][1, 1] == 2.0
+        sim.write_checkpoint("fields")
+        raises(barchan.InputError, "of 1 components, not 2", lambda: sim.add_field("dose", 2))
+        raises(ValueError, "no field is called 'dosis'", lambda: sim.owned()[0].field("dosis"))
+        raises(barchan.InputError, "1 numbers for 2 particles", lambda: sim.scatter("dose", [1, 2], [1.0]))
+    with barchan.Simulation(DECK, checkpoint="fields") as sim:
+        assert not sim.add_field("dose") and np.array_equal(sim.gather("dose")[1], 2.0 * ids)
+
+
+def callbacks(barchan):
+    """on_step gives the bits of loads between runs; what a callback raises ends the run, and nothing else is lost."""
+    with barchan.Simulation(DECK) as sim:
+        for _ in range(10):
+            drag(sim)
+            sim.run(10)
+        expected = sim.digest()
+    with barchan.Simulation(DECK, threads=2) as sim:
+        steps, bricks_kept, checkpoints = [], [], []
+
+        def load(bricks):
+            for brick in bricks:
+                brick.forces[:] = -2.0 * brick.velocities
+                brick.torques_by_radius[:] = -0.1 * brick.surface_speeds
+            bricks_kept[:] = bricks
+
+        def progress(step, time):
+            assert time == sim.time and step == sim.info["step"]
+            raises(RuntimeError, "from within run()", sim.measure)
+            raises(RuntimeError, "may not close", sim.close)
+            steps.append(step)
+
+        sim.on_step(10, load)
+        sim.on_progress(25, progress)
+        sim.on_checkpoint(lambda step, folder, error: checkpoints.append((step, folder, error)))
+        sim.keep_checkpoints("kept", every_steps=30)
+        sim.run(100)
+        assert sim.digest() == expected and steps == [25, 50, 75, 100]
+        assert [c[0] for c in checkpoints][:2] == [30, 60] and all(c[2] == "" and "kept" in c[1] for c in checkpoints), checkpoints
+        raises(barchan.StaleView, "over", lambda: bricks_kept[0].positions)
+        state = sim.save()
+
+        def fail(bricks):
+            raise KeyError("no such thing")
+
+        sim.on_step(7, fail)
+        raises(barchan.RunEnded, "step 105: on_step_together, rank 0: KeyError: 'no such thing' at ", lambda: sim.run(50))
+        raises(barchan.RunEnded, "no such thing", lambda: sim.run(1))
+        raises(barchan.InputError, "every 0 steps", lambda: sim.on_step(0, fail))
+        sim.on_step(1, None)
+        sim.load(state)
+        assert sim.run(5) == 5
+
+
+def stubs(barchan):
+    """The stubs name all that the compiled part has, and nothing else."""
+    import ast
+    from barchan import _barchan
+
+    def public(names):
+        return {n for n in names if not n.startswith("_")} - {"name", "value"}  # of enums
+
+    tree = ast.parse((TREE / "bindings/python/barchan/_barchan.pyi").read_text())
+
+    def declared(body):
+        names = {n.name for n in body if isinstance(n, (ast.ClassDef, ast.FunctionDef))}
+        names |= {n.target.id for n in body if isinstance(n, ast.AnnAssign)}
+        return names | {t.id for n in body if isinstance(n, ast.Assign) for t in n.targets}
+
+    assert public(vars(_barchan)) == public(declared(tree.body)), public(vars(_barchan)) ^ public(declared(tree.body))
+    for node in tree.body:
+        if isinstance(node, ast.ClassDef) and not node.name.endswith(("Error", "Ended", "View")):
+            of_class = public(vars(getattr(_barchan, node.name)))
+            assert of_class == public(declared(node.body)), (node.name, of_class ^ public(declared(node.body)))
+    for name in ("Simulation", "Wall", "Links", "Measures", "Run"):
+        for key, value in vars(getattr(barchan, name)).items():
+            assert key.startswith("_") or not callable(value) or value.__doc__, f"{name}.{key} has no docstring"
+
+
 def wrong_calls(barchan):
     raises(barchan.InputError, "no.toml", lambda: barchan.Simulation("no.toml"))
     raises(barchan.InputError, "stepp", lambda: barchan.Simulation(DECK, set={"time.stepp": 1}))
@@ -201,6 +297,9 @@ def main():
     assert found["world"] == {expected} and found["mpi4py"] <= {expected}, f"{found}, and {expected} on one rank"
     views(barchan)
     links(barchan)
+    own_fields(barchan)
+    callbacks(barchan)
+    stubs(barchan)
     wrong_calls(barchan)
     from_dicts_and_files(barchan, sys.argv[1])
     help_text = barchan.Simulation.__doc__ + barchan.Simulation.run.__doc__

@@ -71,6 +71,80 @@ static void wrong_calls(barchan_sim* sim, const char* deck, int comm) {
   expect(major == BARCHAN_ABI_MAJOR, "the library is of another ABI");
 }
 
+/* A field of the program's own and loads from callbacks; steps are counted and one ends a run. */
+typedef struct {
+  barchan_sim* sim;
+  int64_t progress, stop_at;
+} course;
+
+static int visit(void* user, const barchan_brick* brick) {
+  barchan_loads loads;
+  barchan_values dose;
+  barchan_view velocity;
+  const int64_t* ids = NULL;
+  int64_t size = 0;
+  (void)user;
+  if (barchan_brick_loads(brick, &loads) != BARCHAN_OK) return 1;
+  if (barchan_brick_field(brick, "dose", &dose) != BARCHAN_OK) return 2;
+  if (barchan_brick_view(brick, BARCHAN_VELOCITY, &velocity) != BARCHAN_OK) return 3;
+  if (barchan_brick_ids(brick, &ids, &size) != BARCHAN_OK || size != dose.size) return 4;
+  for (int64_t i = 0; i < size; ++i) {
+    dose.data[i * dose.stride] += 1.0;
+    loads.forces[i * loads.stride] = -0.1 * velocity.data[i * velocity.stride];
+  }
+  return barchan_brick_field(brick, "none", &dose) == BARCHAN_WRONG_CALL ? 0 : 5;
+}
+
+static int progress(void* user, int64_t step, double time) {
+  course* c = user;
+  barchan_info info;
+  if (barchan_get_info(c->sim, &info) != BARCHAN_OK || info.step != step || info.time != time)
+    return 1;
+  if (barchan_measure(c->sim, NULL) != BARCHAN_WRONG_CALL) return 2;
+  if (barchan_run(c->sim, 1, NULL) != BARCHAN_WRONG_CALL) return 3;
+  if (barchan_close(c->sim) != BARCHAN_WRONG_CALL) return 4;
+  ++c->progress;
+  return step == c->stop_at ? 77 : 0;
+}
+
+static void callbacks(barchan_sim* sim) {
+  barchan_info info;
+  barchan_state* before = NULL;
+  course c = {sim, 0, -1};
+  expect_error(barchan_add_field(sim, "no name", 1), BARCHAN_WRONG_INPUT, "no name");
+  expect_error(barchan_get_field(sim, 0, "dose", NULL), BARCHAN_WRONG_CALL, "none");
+  expect_error(barchan_get_field(sim, 0, NULL, NULL), BARCHAN_WRONG_CALL, "NULL");
+  expect_error(barchan_on_progress(sim, 0, progress, &c), BARCHAN_WRONG_INPUT, "every 0 steps");
+  expect(barchan_add_field(sim, "dose", 1) == BARCHAN_OK, "add_field");
+  expect(barchan_on_step(sim, 4, visit, NULL) == BARCHAN_OK, "on_step");
+  expect(barchan_on_progress(sim, 10, progress, &c) == BARCHAN_OK, "on_progress");
+  expect(barchan_run(sim, 40, NULL) == BARCHAN_OK, "a run with callbacks");
+  expect(c.progress == 4, "progress");
+  expect(barchan_save(sim, &before) == BARCHAN_OK, "save");
+  expect(barchan_get_info(sim, &info) == BARCHAN_OK, "info");
+  c.stop_at = info.step + 20;
+  expect_error(barchan_run(sim, 40, NULL), BARCHAN_RUN_ENDED, "the callback returned 77");
+  expect(barchan_load(sim, before) == BARCHAN_OK, "load after a callback's end");
+  expect(barchan_free_state(before) == BARCHAN_OK, "free");
+  expect(barchan_on_step(sim, 1, NULL, NULL) == BARCHAN_OK, "no on_step");
+  expect(barchan_on_progress(sim, 1, NULL, NULL) == BARCHAN_OK, "no on_progress");
+  expect(barchan_clear_loads(sim) == BARCHAN_OK, "clear");
+  int64_t* ids = malloc(sizeof *ids * (size_t)info.num_particles);
+  double* doses = malloc(sizeof *doses * (size_t)info.num_particles);
+  int64_t count = -1;
+  expect(barchan_gather_field(sim, "dose", info.num_particles, ids, doses, &count) == BARCHAN_OK,
+         "gather_field");
+  for (int64_t i = 0; i < count; ++i) expect(doses[i] == 10.0, "a dose");
+  const int64_t two[] = {7, 3};
+  const double values[] = {1.0, 2.0};
+  expect(barchan_scatter_field(sim, "dose", 2, two, values) == BARCHAN_OK, "scatter_field");
+  expect(barchan_gather_field(sim, "dose", info.num_particles, ids, doses, &count) == BARCHAN_OK,
+         "gather_field");
+  if (count > 0) expect(doses[2] == 2.0 && doses[6] == 1.0, "scattered values");
+  free(ids);
+  free(doses);
+}
+
 /* Contacts with the floor, and steps of other lengths. */
 static void press(barchan_sim* sim) {
   const double below[3] = {0.0, -0.002, 0.0};
@@ -80,9 +154,12 @@ static void press(barchan_sim* sim) {
       barchan_set_contact(sim, "sand", "sand", "friction=0.1\nnormal_stiffness=1e5") == BARCHAN_OK,
       "set_contact");
   expect(barchan_set_time_step(sim, 1.5e-4) == BARCHAN_OK, "set_time_step");
-  expect(barchan_advance_to(sim, 0.0301, NULL) == BARCHAN_OK, "advance_to");
+  expect(barchan_advance_to(sim, 0.0401, NULL) == BARCHAN_OK, "advance_to");
+  double normal[3] = {0.0, 0.0, 0.0};
+  expect(barchan_get_wall_normal(sim, "floor", normal) == BARCHAN_OK && normal[1] == 1.0, "normal");
+  expect_error(barchan_get_wall_normal(sim, "lid", normal), BARCHAN_WRONG_CALL, "'floor'");
   barchan_info info;
-  expect(barchan_get_info(sim, &info) == BARCHAN_OK && info.time == 0.0301, "the time itself");
+  expect(barchan_get_info(sim, &info) == BARCHAN_OK && info.time == 0.0401, "the time itself");
   expect(barchan_get_links(sim, BARCHAN_CONTACT, 0, NULL, &count) == BARCHAN_OK, "how many links");
   barchan_link* links = malloc((size_t)(count + 1) * sizeof *links);
   expect(barchan_get_links(sim, BARCHAN_CONTACT, count, links, &again) == BARCHAN_OK, "links");
@@ -115,6 +192,7 @@ int main(int argc, char** argv) {
     int64_t done = 0;
     expect(barchan_run(sim, 20, &done) == BARCHAN_OK && done == 20, "run");
   }
+  callbacks(sim);
   press(sim);
   expect(barchan_free_state(state) == BARCHAN_OK, "free");
   expect_error(barchan_load(sim, state), BARCHAN_WRONG_CALL, "no such state");

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <mpi.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -75,6 +76,27 @@ TEST(Coupling, ParticlesComeAndGoAlikeOnAnyRanks) {
       come_and_go(sim, away);
     });
   }
+}
+
+/// The lightest one that is there is on the last rank: the first one must know of it, too.
+TEST(Coupling, TheStableStepOfNewcomersIsTheSameOnAnyRanks) {
+  Scenario s = dragged(2);
+  const auto last =
+      std::max_element(s.set.particles.begin(), s.set.particles.end(),
+                       [](const auto& p, const auto& q) { return p.position[0] < q.position[0]; });
+  last->radius *= 0.25;
+  ParticleData p = s.set.particles[0];
+  p.id = 100000;
+  p.position = last->position + Vec3(-2.0, 0.02, 0.0);
+  p.radius = 1e-3;
+  Simulation alone(s.model, s.set, MPI_COMM_SELF, with_threads(1));
+  Simulation sim(s.model, s.set, MPI_COMM_WORLD, with_threads(2));
+  const auto words = [&](Simulation& of) {
+    return words_thrown<InputError>([&] { of.add(std::span(&p, 1)); });
+  };
+  const std::string expected = words(alone);
+  expect_words(expected, "is unstable: the limit is");
+  EXPECT_EQ(words(sim), expected);
 }
 
 TEST(Coupling, RefusesParticlesThatCannotComeOrGo) {

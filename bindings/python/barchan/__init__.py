@@ -16,8 +16,9 @@ Under MPI pass `comm=MPI.COMM_WORLD` of mpi4py, or any communicator of some rank
 MPI_COMM_WORLD. All quantities are in SI units.
 """
 from ._barchan import InputError, RunEnded, RunError, StaleView, State, version as __version__
+from .parts import Links, Measures, Wall
 from .results import Run, read
-from .simulation import Links, Measures, Simulation, Wall
+from .simulation import Simulation
 
 __all__ = ["InputError", "Links", "Measures", "Run", "RunEnded", "RunError", "Simulation", "StaleView", "State", "Wall",
            "read", "__version__"]

@@ -1,94 +1,30 @@
 """Simulations, from decks, under MPI."""
 from __future__ import annotations
 
-import dataclasses
 import os
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Union
+from typing import Any, Dict, List, Mapping, Optional, Tuple, Union
 
 import numpy as np
 
 from . import _barchan
+from ._events import Events
 from ._toml import deck_text, value_text
+from ._values import Vector, field as field_of, handle_of, three, turns, vectors
+from .parts import Links, Measures, Wall
 
-__all__ = ["Links", "Measures", "Simulation", "Wall"]
-
-Vector = Union[Sequence[float], np.ndarray]
-
-
-@dataclasses.dataclass(frozen=True)
-class Measures:
-    """Sums over all ranks, exact whatever their order."""
-    kinetic: float  #: energy [J]
-    elastic: float  #: of contacts and bonds [J]
-    gravitational: float  #: [J]
-    momentum: Tuple[float, float, float]  #: [N·s]
-    contacts: int  #: touching pairs without a bond
-    bonds: int  #: whole ones
-    broken_bonds: int  #: since the start
-    max_overlap: float  #: [m]
-    max_overlap_share: float  #: of the smaller radius
-    max_speed: float  #: [m/s]
+__all__ = ["Simulation"]
 
 
-@dataclasses.dataclass(frozen=True)
-class Links:
-    """Contacts or bonds that count on this rank, in any order, with the forces that the next step finds in them."""
-    first: np.ndarray  #: (n) ids; of two particles the lower one
-    second: np.ndarray  #: (n) ids; of contacts with walls the wall's place in `sim.walls`, from 0
-    normals: np.ndarray  #: (n, 3) from the first to the second, of length 1
-    overlaps: np.ndarray  #: (n) [m]; of a bond by how much it is shorter than unstressed
-    normal_forces: np.ndarray  #: (n) above zero they push the two apart [N]
-    tangential_forces: np.ndarray  #: (n, 3) on the first; the second feels the opposite [N]
-
-    def __len__(self) -> int:
-        return len(self.first)
-
-
-class Wall:
-    """A wall of a simulation: where it is, what acts on it, and how it moves.
-
-    `point` [m], `normal`, `velocity` [m/s]; `force` [N], `torque` about the point [N·m] and `work` [J] are those of the last
-    measure().
-    """
-
-    def __init__(self, simulation: "Simulation", name: str):
-        self._simulation, self.name = simulation, name
-
-    def __getattr__(self, name: str):
-        if name not in ("point", "normal", "velocity", "force", "torque", "work", "is_active"):
-            raise AttributeError(f"a wall has no {name!r}: point, normal, velocity, force, torque, work, is_active")
-        value = self._simulation._inside.wall(self.name)[name]
-        return np.array(value) if isinstance(value, list) else value
-
-    def set_velocity(self, velocity: Vector) -> None:
-        """From the next step on [m/s]. Collective; the same on every rank."""
-        self._simulation._inside.set_wall_velocity(self.name, _three(velocity))
-
-    def set_load(self, load: float) -> None:
-        """Of a loaded plate, along its normal [N/m²]. Collective; the same on every rank."""
-        self._simulation._inside.set_wall_load(self.name, float(load))
-
-    def set_pose(self, point: Vector, normal: Optional[Vector] = None) -> None:
-        """Puts it elsewhere at once [m]; normal: of any length, None: as it is. Collective; the same on every rank.
-
-        Raises:
-            InputError: a particle would reach into the wall by more than half of its radius; nothing has changed.
-        """
-        self._simulation._inside.set_wall_pose(self.name, _three(point), _three(self.normal if normal is None else normal))
-
-    def __repr__(self) -> str:
-        return f"<wall {self.name!r} at {self.point}>"
-
-
-class Simulation:
+class Simulation(Events):
     """A simulation on all ranks of a communicator.
 
     Construction, run, advance_to, set_time_step, measure, digest, gather, scatter, contacts, wall_contacts, bonds, add,
-    remove, set_gravity, set_contact, walls' set_..., save, load, write_checkpoint and close are collective: all ranks call them in the same order. The rest is local. One thread at a time.
+    remove, add_field, set_gravity, set_contact, walls' set_..., save, load, write_checkpoint, keep_checkpoints, on_...
+    but on_departure, and close are collective: all ranks call them in the same order. The rest is local. One thread at a
+    time: a second one meets RuntimeError, as does a call after close().
 
-    Views are of a moment: run(), load(), add(), remove(), scatter(), set_gravity(), set_time_step(),
-    set_pose() and clear_loads() end it. A view
-    then raises StaleView. An array that came from it stays safe: it keeps the values of its moment, and cannot be written.
+    Views are of a moment: run(), load(), add(), remove(), add_field(), scatter(), set_gravity(), set_time_step(),
+    set_pose() and clear_loads() end it. A view then raises StaleView. An array that came from it stays safe: it keeps the values of its moment, and cannot be written.
 
     Args:
         deck: path of a deck, or a dict with the same tables and keys (docs/deck.md).
@@ -118,7 +54,7 @@ class Simulation:
         opening.overrides = [(key, value_text(value)) for key, value in (set or {}).items()]
         opening.threads, opening.exchange, opening.vector, opening.schedule = threads, exchange, vector, schedule
         opening.checkpoint = "" if checkpoint is None else os.fspath(checkpoint)
-        opening.comm = _handle_of(comm)
+        opening.comm = handle_of(comm)
         self._inside = _barchan.open(opening)
 
     def __enter__(self) -> "Simulation":
@@ -171,7 +107,13 @@ class Simulation:
         return self._inside.run(steps)
 
     def advance_to(self, time: float) -> int:
-        """Runs until it is `time` [s]: whole steps, and a shorter last one where one is needed. Returns steps done."""
+        """Runs until it is `time` [s]: whole steps, and a shorter last one where one is needed. Returns steps done.
+
+        Raises:
+            ValueError: a time that has passed.
+            InputError: not finite, or not the same on every rank.
+            RunEnded, RunError: as run().
+        """
         return self._inside.advance_to(time)
 
     def set_time_step(self, dt: float) -> None:
@@ -193,7 +135,8 @@ class Simulation:
     # ---- arrays
     def owned(self) -> List[_barchan.Brick]:
         """The particles of this rank, a view for each brick: ids, positions, velocities, surface_speeds, radii,
-        inverse_masses, densities, types to read, without a copy; forces and torques_by_radius to write in place."""
+        inverse_masses, densities, types to read, without a copy; forces, torques_by_radius and field(name) to write in
+        place."""
         return self._inside.owned()
 
     def set_loads(self, ids: Any, forces: Any, torques: Any = None) -> None:
@@ -204,11 +147,14 @@ class Simulation:
             ids: (n); in the order of owned() it is fastest.
             forces: (n, 3), in 2D also (n, 2) [N].
             torques: (n, 3), in 2D also (n) about z [N·m]; None: zeros.
+
+        Raises:
+            ValueError: an id of another rank, other shapes, a number that is not finite; nothing is set.
         """
         ids = np.asarray(ids, dtype=np.int64).ravel()
-        rows = _vectors(forces, len(ids), "forces")
-        turns = np.empty(0) if torques is None else _turns(torques, len(ids), "torques")
-        self._inside.set_loads(ids, rows, turns)
+        rows = vectors(forces, len(ids), "forces")
+        about = np.empty(0) if torques is None else turns(torques, len(ids), "torques")
+        self._inside.set_loads(ids, rows, about)
 
     def clear_loads(self) -> None:
         """No loads any more, on this rank."""
@@ -218,20 +164,50 @@ class Simulation:
         """A field of all particles: (ids, values) in order of ids on rank 0, None elsewhere. Collective.
 
         Args:
-            field: position, velocity, angular_velocity, force, torque (n, 3); radius, mass, type (n).
+            field: position, velocity, angular_velocity, force, torque (n, 3); radius, mass, type (n); or one of your
+                own (n, components).
+
+        Raises:
+            ValueError: there is no such field.
         """
-        return self._inside.gather(_field(field))
+        if field in (own := self.fields):
+            return self._inside.gather_field(field, own[field])
+        return self._inside.gather(field_of(field))
 
     def scatter(self, field: str, ids: Any, values: Any) -> None:
-        """Sets velocity, angular_velocity, force or torque of any particles. Collective; the same lists on every rank.
+        """Sets velocity, angular_velocity, force, torque or a field of your own of any particles. Collective; the same
+        lists on every rank.
 
         Args:
-            values: (n, 3), in 2D also (n, 2) [m/s, N]; angular_velocity and torque in 2D also (n) about z [rad/s, N·m].
+            values: (n, 3), in 2D also (n, 2) [m/s, N]; angular_velocity and torque in 2D also (n) about z [rad/s, N·m];
+                of your own (n, components).
+
+        Raises:
+            InputError: an id that there is not, other shapes, a number that is not finite; nothing has changed.
         """
         ids = np.asarray(ids, dtype=np.int64).ravel()
-        what = _field(field)
-        rows = _turns if field in ("angular_velocity", "torque") else _vectors
+        if field in self.fields:
+            return self._inside.scatter_field(field, ids, np.asarray(values, dtype=float))
+        what = field_of(field)
+        rows = turns if field in ("angular_velocity", "torque") else vectors
         self._inside.scatter(what, ids, rows(values, len(ids), "values"))
+
+    @property
+    def fields(self) -> Dict[str, int]:
+        """Your own fields: name to components."""
+        return self._inside.fields()
+
+    def add_field(self, name: str, components: int = 1) -> bool:
+        """A field of your own: numbers of every particle that travel with it, through states and checkpoints, and that
+        barchan never reads. `brick.field(name)` is an array to read and write in place. Collective; the same on every rank.
+
+        The numbers are 0 at first, and of newcomers. Returns False where there is such a field, as after a restart: it
+        keeps its values.
+
+        Raises:
+            InputError: no name (letters, digits and _), other components than the field has, more than 256 numbers.
+        """
+        return self._inside.add_field(name, components)
 
     def contacts(self) -> Links:
         """Pairs of particles that touch, or hold each other from afar. A copy. Collective."""
@@ -260,6 +236,11 @@ class Simulation:
             material: its name, or types from 0.
             density: None: that of the material.
             ids: None: the next ones that are free.
+
+        Raises:
+            ValueError: other shapes, no such material.
+            InputError: an id that is taken, no room there, larger than cells allow, a step that would be too long; nothing
+                is added.
         """
         position = np.atleast_2d(np.asarray(position, dtype=float))
         n = len(position)
@@ -281,19 +262,27 @@ class Simulation:
             raise ValueError(f"{len(ids)} ids for {n} particles")
         if np.shape(omega) == (3,):  # one vector for all, of three particles, too
             omega = np.broadcast_to(omega, (n, 3))
-        motion = np.hstack([_vectors(position, n, "position"), _vectors(velocity, n, "velocity"),
-                            _turns(omega, n, "omega")])
+        motion = np.hstack([vectors(position, n, "position"), vectors(velocity, n, "velocity"),
+                            turns(omega, n, "omega")])
         self._inside.add(ids, types, np.broadcast_to(np.asarray(radius, dtype=float), n),
                          np.broadcast_to(np.asarray(density, dtype=float), n), motion)
         return ids
 
     def remove(self, ids: Any) -> None:
-        """Particles that go now, with contacts and bonds. Collective; the same on every rank."""
+        """Particles that go now, with contacts and bonds. Collective; the same on every rank.
+
+        Raises:
+            InputError: an id that there is not, or that is named twice; nothing is removed.
+        """
         self._inside.remove(np.asarray(ids, dtype=np.int64).ravel())
 
     def set_gravity(self, gravity: Vector) -> None:
-        """From the next step on [m/s²]. Collective; the same on every rank."""
-        self._inside.set_gravity(_three(gravity))
+        """From the next step on [m/s²]. Collective; the same on every rank.
+
+        Raises:
+            InputError: not finite, not the same on every rank, or along z in 2D.
+        """
+        self._inside.set_gravity(three(gravity))
 
     def set_contact(self, a: str, b: str, **numbers: float) -> None:
         """What two materials have together from the next step on: `sim.set_contact("sand", "steel", friction=0.3)`.
@@ -302,6 +291,10 @@ class Simulation:
 
         Args:
             numbers: under the keys of a deck: friction, restitution, normal_stiffness and so on; others stay.
+
+        Raises:
+            ValueError: there is no such material.
+            InputError: no such key, a value without a meaning, a step that would be too long; nothing has changed.
         """
         self._inside.set_contact(a, b, {key: float(value) for key, value in numbers.items()})
 
@@ -313,66 +306,22 @@ class Simulation:
         return state
 
     def load(self, state: _barchan.State) -> None:
-        """All is as it was when `state` was saved, to the bit. Collective."""
+        """All is as it was when `state` was saved, to the bit. After RunEnded, too. Collective.
+
+        Raises:
+            RuntimeError: the state is empty, or of another simulation.
+        """
         self._inside.load(state)
 
     def write_checkpoint(self, folder: Union[str, os.PathLike]) -> None:
-        """Writes the present state to a folder; Simulation(deck, checkpoint=folder) continues. Collective."""
+        """Writes the present state to a folder; Simulation(deck, checkpoint=folder) continues. Collective.
+
+        Raises:
+            OSError: it is not on the disk, on every rank.
+        """
         if not self._inside.write_checkpoint(os.fspath(folder)):
             raise OSError(f"the checkpoint could not be written to {os.fspath(folder)}")
 
     def __repr__(self) -> str:
         what = self._inside.info()
         return f"<barchan simulation {what['title']!r}: {what['num_particles']} particles, step {what['step']}>"
-
-
-def _handle_of(comm: Any) -> int:
-    if not _barchan.is_mpi_running():
-        if comm is not None and not isinstance(comm, int):
-            raise ValueError("MPI does not run: import mpi4py.MPI, which starts it")
-        _barchan.start_mpi()
-    if comm is None:
-        return _barchan.world()
-    if isinstance(comm, int):
-        return comm
-    if hasattr(comm, "py2f"):
-        return comm.py2f()
-    raise TypeError(f"comm is a communicator of mpi4py, its Fortran handle, or None, not {comm!r}")
-
-
-def _field(name: str) -> _barchan.Field:
-    fields = _barchan.Field.__members__
-    if name not in fields:
-        raise ValueError(f"there is no field {name!r}: {', '.join(fields)}")
-    return fields[name]
-
-
-def _three(v: Vector) -> List[float]:
-    v = np.asarray(v, dtype=float).ravel()
-    if len(v) not in (2, 3):
-        raise ValueError(f"a vector has 2 or 3 components, not {len(v)}")
-    return [float(v[0]), float(v[1]), float(v[2]) if len(v) == 3 else 0.0]
-
-
-def _vectors(values: Any, n: int, what: str) -> np.ndarray:
-    """(n, 3) from that, from (n, 2) with z = 0, or from one vector or number for all."""
-    values = np.asarray(values, dtype=float)
-    if values.ndim == 0 or values.shape in ((2,), (3,)):
-        if values.ndim == 0 and values != 0.0:
-            raise ValueError(f"{what}: a number for a vector")
-        values = np.broadcast_to(values, (n, 3 if values.ndim == 0 else len(values)))
-    if values.shape not in ((n, 2), (n, 3)):
-        raise ValueError(f"{what} of shape {values.shape} for {n} particles: ({n}, 3), in 2D also ({n}, 2)")
-    rows = np.zeros((n, 3))
-    rows[:, :values.shape[1]] = values
-    return rows
-
-
-def _turns(values: Any, n: int, what: str) -> np.ndarray:
-    """(n, 3) from that, or from (n): about z."""
-    values = np.asarray(values, dtype=float)
-    if values.ndim == 0 or values.shape in ((n,), (n, 1)):
-        rows = np.zeros((n, 3))
-        rows[:, 2] = values.reshape(-1) if values.ndim else values
-        return rows
-    return _vectors(values, n, what)

@@ -60,6 +60,26 @@ TEST(LaneMessages, BringArrivalsAcrossWithHistoryAndBonds) {
   EXPECT_EQ(came.bonds.at(0).bond.id_b, 9);
 }
 
+TEST(LaneMessages, BringFieldsOfCallersWhereARunHasSome) {
+  World<2> world = world_with_a_wall_and_a_bond();
+  std::vector<std::byte> without, with;
+  Migration<2> m = a_migration(world);
+  encode(m, without);
+  m.carried = {1.5, 2.5};
+  encode(m, with);
+  const auto decode = [&](const std::vector<std::byte>& message) {
+    return decode_migration<2>(message, world, box_of_slabs(world.grid, 0, kSlabs)).carried;
+  };
+
+  EXPECT_THROW((void)decode(with), RunError);
+  EXPECT_TRUE(decode(without).empty());
+  world.num_carried = 2;
+  EXPECT_EQ(decode(with), (std::vector<double>{1.5, 2.5}));
+  EXPECT_THROW((void)decode(without), RunError);
+  world.num_carried = 3;
+  EXPECT_THROW((void)decode(with), RunError);
+}
+
 TEST(LaneMessages, RefuseWhatWouldLeaveAnArray) {
   const World<2> world = world_with_a_wall_and_a_bond();
   const auto refuses = [&world](auto&& spoil) {

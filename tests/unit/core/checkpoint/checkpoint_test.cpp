@@ -105,6 +105,31 @@ std::string write_some(const std::string& path, std::int64_t step = 500) {
   return folder.complete(step);
 }
 
+TEST(Checkpoint, KnowsFieldsOfCallers) {
+  CheckpointState state = some_state();
+  CallerFields fields;
+  fields.add("dose", 1);
+  fields.add("path", 3);
+  state.fields = fields.saved();
+  const CheckpointState read = decode_state(encode(state), "file");
+  EXPECT_EQ(num_carried(read), 4);
+  ASSERT_TRUE(fields.restore(read.fields));
+  EXPECT_EQ(fields.find("path")->at, 1);
+  CheckpointShare share = some_share(5, 1);
+  ShareLimits limits = kLimits;
+  limits.num_carried = num_carried(read);
+  EXPECT_THROW(check_share(share, limits, "file"), InputError);
+  share.carried.assign(20, 0.5);
+  EXPECT_NO_THROW(check_share(share, limits, "file"));
+  EXPECT_THROW(check_share(share, kLimits, "file"), InputError);
+  for (const std::int32_t components : {0, -1, 1 << 30}) {
+    state.fields[1].components = components;
+    EXPECT_THROW((void)decode_state(encode(state), "file"), InputError) << components;
+  }
+  state.fields[1] = state.fields[0];  // a name that comes twice
+  EXPECT_THROW((void)decode_state(encode(state), "file"), InputError);
+}
+
 /// Reads all of a checkpoint, as a restart does.
 std::vector<CheckpointShare> read_all(const std::string& checkpoint) {
   const Manifest manifest = read_manifest(checkpoint);
