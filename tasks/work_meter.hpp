@@ -17,8 +17,8 @@ class WorkMeter {
   void note(int lane, std::int64_t ns, std::int64_t particles, std::int64_t step);
   /// Ends a window: cuts are about to move.
   void end_window();
-  /// Of a particle, in parts of a nanosecond: whole numbers, so that sums over ranks are the same on
-  /// all of them. At least 1.
+  /// Of a particle, in parts of a nanosecond: whole numbers, so that all ranks find the same sums.
+  /// At least 1.
   [[nodiscard]] std::int64_t weight(int lane) const;
 
  private:

@@ -109,8 +109,8 @@ std::string cuts_for(const Scenario& s, unsigned turn) {
   return cuts;
 }
 
-/// All are tried on two ranks; a half, drawn by the number of the variant, on three and four; a third
-/// on one rank, where nothing is sent. BARCHAN_TEST_ALL=1 tries all.
+/// All are tried on two ranks; a half, drawn by the number of the variant, on three and four; a
+/// third on one rank, where nothing is sent. BARCHAN_TEST_ALL=1 tries all.
 bool is_tried(unsigned number) {
   static const bool is_all = std::getenv("BARCHAN_TEST_ALL") != nullptr;
   const unsigned every = num_ranks() == 1 ? 3 : num_ranks() == 2 ? 1 : 2;
