@@ -1,7 +1,9 @@
 #include <barchan/app/command_line.hpp>
 
 #include <map>
+#include <span>
 #include <sstream>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -31,11 +33,46 @@ std::vector<std::string> with_replay(std::vector<std::string> names) {
 }
 
 struct Words {
-  std::string schedule, search, progress;
+  std::string schedule, search, progress, trace;
 };
 
+constexpr std::string_view kTraceSteps = "steps=";
+
+/// The steps of `--trace steps=A:B`; empty: none are named, or by wrong words.
+std::optional<std::pair<std::int64_t, std::int64_t>> trace_steps(const std::string& words) {
+  return words.starts_with(kTraceSteps) ? step_window(words.substr(kTraceSteps.size()))
+                                        : std::nullopt;
+}
+
+/// A flag that may have a value.
+void add_trace(CLI::App& command, std::string& words) {
+  command
+      .add_flag("--trace", words,
+                "Write trace.json: tasks, messages and waits of all ranks, for Perfetto; "
+                "--trace steps=A:B of these steps only")
+      ->check(CLI::Validator(
+          [](std::string& text) -> std::string {
+            return text == "true" || trace_steps(text)
+                       ? ""
+                       : "'" + text + "' is no range of steps, such as steps=1000:1100";
+          },
+          ""));
+}
+
+/// `--trace steps=A:B` as one word: a flag takes no other as its value.
+std::vector<std::string> with_joined_trace(int argc, const char* const* argv) {
+  std::vector<std::string> words;
+  for (const std::string word : std::span(argv, static_cast<std::size_t>(argc))) {
+    if (!words.empty() && words.back() == "--trace" && word.starts_with(kTraceSteps))
+      words.back() += "=" + word;
+    else
+      words.push_back(word);
+  }
+  return words;
+}
+
 void add_run(CLI::App& root, RunArguments& run, Words& words) {
-  auto& [schedule, search, progress] = words;
+  auto& [schedule, search, progress, trace] = words;
   CLI::App& command = *root.add_subcommand("run", "Run a deck and write its results into a folder");
   command.add_option("deck", run.deck, "The deck, a TOML file")
       ->required()
@@ -99,8 +136,7 @@ void add_run(CLI::App& root, RunArguments& run, Words& words) {
       .add_option("--vector", run.options.vector,
                   "Width of vectors; default: auto, the widest that this machine supports")
       ->check(one_of({"auto", "scalar", "avx2", "avx512"}));
-  command.add_flag("--trace", run.options.trace,
-                   "Write trace.json: tasks, messages and waits of all ranks, for Perfetto");
+  add_trace(command, trace);
   command.add_option("--graph", run.graph, "Write the graph of a step as DOT, for Graphviz")
       ->type_name("FILE")
       ->check(not_empty());
@@ -242,7 +278,10 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   for (CLI::App* command : root.get_subcommands({}))
     command->set_version_flag("--version", "barchan " + version());
   try {
-    root.parse(argc, argv);
+    const std::vector<std::string> all = with_joined_trace(argc, argv);
+    std::vector<const char*> pointers;
+    for (const std::string& word : all) pointers.push_back(word.c_str());
+    root.parse(static_cast<int>(pointers.size()), pointers.data());
   } catch (const CLI::Success& asked) {
     std::ostringstream out, ignored;
     root.exit(asked, out, ignored);
@@ -257,6 +296,8 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   if (line.kind == CommandKind::Text)
     line.status = with_verdict(nullptr, [&] { line.text = text_of(root, texts); });
   if (words.schedule == "sequential") line.run.options.schedule = Schedule::Sequential;
+  line.run.options.trace = !words.trace.empty();
+  line.run.options.trace_steps = trace_steps(words.trace);
   if (words.progress == "thread") line.run.options.progress = Progress::Thread;
   if (!words.search.empty())
     line.run.options.search =

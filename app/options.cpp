@@ -56,4 +56,18 @@ void add_settings(CLI::App& command, std::vector<std::string>& settings) {
       ->allow_extra_args(false);
 }
 
+std::optional<std::pair<std::int64_t, std::int64_t>> step_window(const std::string& text) {
+  std::pair<std::int64_t, std::int64_t> window;
+  const auto colon = text.find(':');
+  const auto is_number = [](const std::string& word, std::int64_t& value) {
+    const auto read = std::from_chars(word.data(), word.data() + word.size(), value);
+    return read.ec == std::errc() && read.ptr == word.data() + word.size() && !word.empty();
+  };
+  const bool is_window =
+      colon != std::string::npos && is_number(text.substr(0, colon), window.first) &&
+      is_number(text.substr(colon + 1), window.second) && window.first <= window.second;
+  if (!is_window) return std::nullopt;
+  return window;
+}
+
 }  // namespace barchan::app

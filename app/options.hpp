@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -35,5 +38,9 @@ struct TextWords {
 void add_texts(CLI::App& root, TextWords& words);
 /// What they print. Errors: InputError, RunError.
 [[nodiscard]] std::string text_of(const CLI::App& root, const TextWords& words);
+
+/// First and last step of "1000:1010"; empty: it is no such text.
+[[nodiscard]] std::optional<std::pair<std::int64_t, std::int64_t>> step_window(
+    const std::string& text);
 
 }  // namespace barchan::app

@@ -75,6 +75,7 @@ void Simulation::EngineOf<Dim>::begin_loop() {
   if (!options_.trace) return;
   trace_ = std::make_unique<Trace>(communicator_, parts_.strip.neighbours(), options_.threads,
                                    options_.trace_events);
+  if (options_.trace_steps) trace_->keep(options_.trace_steps->first, options_.trace_steps->second);
   graph_.set_trace(trace_.get());
   parts_.strip.set_trace(trace_.get());
 }

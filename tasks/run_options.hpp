@@ -40,8 +40,9 @@ struct RunOptions {
   bool tune_skin = true;               ///< look for the fastest skin, where the deck gives none
   bool trace = false;                  ///< record tasks and messages; see Simulation::write_trace
   std::size_t trace_events = 1 << 17;  ///< the latest events that each thread keeps
-  std::shared_ptr<Tape> tape;          ///< records all messages; played by exchange "replay"
-  TestHooks hooks;                     ///< for tests only
+  std::optional<std::pair<std::int64_t, std::int64_t>> trace_steps;  ///< of these alone; else all
+  std::shared_ptr<Tape> tape;  ///< records all messages; played by exchange "replay"
+  TestHooks hooks;             ///< for tests only
 };
 
 }  // namespace barchan

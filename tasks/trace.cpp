@@ -41,6 +41,7 @@ Trace::Trace(const Communicator& communicator, const Neighbours& neighbours, int
 }
 
 void Trace::put(const Event& event) {
+  if (event.step < first_ || event.step > last_) return;
   const int index = tbb::this_task_arena::current_thread_index();
   const auto worker = index < 0 ? 0 : static_cast<std::size_t>(index) % rings_.size();
   Ring& ring = rings_[worker];

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,9 @@ class Trace {
   /// @param num_workers  threads of the rank; @param num_events  that each of them keeps
   Trace(const Communicator& communicator, const Neighbours& neighbours, int num_workers,
         std::size_t num_events);
+
+  /// From now on only events of these steps are kept.
+  void keep(std::int64_t first, std::int64_t last) { first_ = first, last_ = last; }
 
   // By any worker, in a step.
   /// @param ahead  steps after the one that was begun
@@ -87,6 +91,7 @@ class Trace {
   Neighbours neighbours_;
   std::vector<Ring> rings_;
   std::int64_t step_ = 0;
+  std::int64_t first_ = 0, last_ = std::numeric_limits<std::int64_t>::max();
   std::int64_t begin_ = 0, begin_offset_ = 0;  ///< own clock, and what rank 0's was ahead then
 };
 

@@ -67,6 +67,11 @@ def check_trace_and_graph():
     noticed = {event["id"]: event["ts"] for event in events if event["ph"] == "f"}
     expect(len(noticed) > 100 and set(noticed) <= set(sent), "messages that nobody sent")
     expect(all(sent[name] <= ts for name, ts in noticed.items()), "messages noticed before they were sent")
+    done = run("run", "case.toml", "--out", "traced.out", "--force", "--trace", "steps=20:24", "--quiet", ranks=2)
+    kept = {event["args"]["step"] for event in loaded("traced.out/trace.json")["traceEvents"] if event["ph"] == "X"}
+    expect(done.returncode == 0 and kept and kept <= set(range(20, 25)), f"steps of a trace: {sorted(kept)}, {done}")
+    done = run("run", "case.toml", "--out", "traced.out", "--force", "--trace", "steps=24:20", "--quiet")
+    expect(done.returncode == 2 and "no range of steps" in done.stderr, f"a range that ends before it begins: {done}")
     with open("step.dot", encoding="utf-8") as file:
         dot = file.read()
     expect(dot.count("{") == dot.count("}") and "r0_right0 -> r1_arrived0" in dot, "step.dot")
