@@ -14,6 +14,7 @@
 #include <barchan/core/base/nearest.hpp>
 #include <barchan/tasks/results/run_summary.hpp>
 #include <barchan/tasks/simulation.hpp>
+#include <barchan/tasks/threads.hpp>
 
 namespace barchan::app {
 namespace {
@@ -100,7 +101,7 @@ void add_run(CLI::App& root, RunArguments& run, Words& words) {
                   "Threads per rank; default: the node's cores over its ranks")
       ->type_name("T")
       ->transform(whole_number())
-      ->check(CLI::Range(1, 1024));
+      ->check(CLI::Range(1, kMostThreads));
   command
       .add_option("--exchange", run.options.exchange,
                   "How ranks exchange halos: " + listed(with_replay(exchange_choices())) +

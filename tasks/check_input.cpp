@@ -18,6 +18,7 @@
 #include <barchan/core/model/validate.hpp>
 #include <barchan/tasks/forecast.hpp>
 #include <barchan/tasks/stability.hpp>
+#include <barchan/tasks/threads.hpp>
 
 namespace barchan {
 namespace {
@@ -75,6 +76,13 @@ bool has_several_threads(const RunOptions& options) {
   return options.threads > 1 || options.progress == Progress::Thread;
 }
 
+void check_threads(const Communicator& communicator, const RunOptions& options) {
+  if (options.threads > kMostThreads)
+    throw InputError(fmt::format("{} threads a rank", options.threads),
+                     fmt::format("at most {}", kMostThreads));
+  check_thread_level(communicator, has_several_threads(options));
+}
+
 }  // namespace
 
 void check_input(const Communicator& communicator, const Model& model, const ParticleSet& particles,
@@ -83,7 +91,7 @@ void check_input(const Communicator& communicator, const Model& model, const Par
            {"the particles of rank",
             "differ from those of rank 0 (give every rank all particles, in the same order)"});
   validate(model);
-  check_thread_level(communicator, has_several_threads(options));
+  check_threads(communicator, options);
   check_particles(model, particles);
   check_walls(model, particles);
   check_time_step(model, step_limits(model, particles));
@@ -96,7 +104,7 @@ void check_input(const Communicator& communicator, const Model& model,
            {"the checkpoint's path on rank",
             "differs from that on rank 0 (give every rank the same path)"});
   validate(model);
-  check_thread_level(communicator, has_several_threads(options));
+  check_threads(communicator, options);
 }
 
 }  // namespace barchan

@@ -8,6 +8,7 @@
 #include <barchan/core/base/error.hpp>
 #include <barchan/tasks/agree.hpp>
 #include <barchan/tasks/engine.hpp>
+#include <barchan/tasks/id_order.hpp>
 #include <barchan/tasks/load_rows.hpp>
 
 namespace barchan {
@@ -91,12 +92,16 @@ Gathered Simulation::EngineOf<Dim>::gather(ParticleField field) {
     for (std::int32_t i = 0; i < lane.brick.store.num_owned; ++i)
       mine.push_back(row_of(lane.brick.store, i, field));
   }
-  std::vector<Row> all = communicator_.gather_all(std::span<const Row>(mine));
-  std::sort(all.begin(), all.end(), [](const Row& a, const Row& b) { return a.id < b.id; });
-  Gathered gathered;
-  for (const Row& row : all) {
-    gathered.ids.push_back(row.id);
-    gathered.values.insert(gathered.values.end(), row.values, row.values + width_of(field));
+  const std::vector<Row> all = communicator_.gather_all(std::span<const Row>(mine));
+  std::vector<std::int64_t> ids(all.size());
+  std::transform(all.begin(), all.end(), ids.begin(), [](const Row& row) { return row.id; });
+  const auto width = static_cast<std::size_t>(width_of(field));
+  Gathered gathered{{}, std::vector<double>(width * all.size())};
+  gathered.ids.reserve(all.size());
+  double* to = gathered.values.data();
+  for (const std::size_t k : order_of(ids)) {
+    gathered.ids.push_back(ids[k]);
+    to = std::copy_n(all[k].values, width, to);
   }
   return gathered;
 }

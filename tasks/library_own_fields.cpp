@@ -1,7 +1,6 @@
 // Fields of the caller's own: what Simulation asks of callers, and what the engine does.
 #include <algorithm>
 #include <cstddef>
-#include <numeric>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -14,6 +13,7 @@
 #include <barchan/core/model/digest.hpp>
 #include <barchan/tasks/caller_checks.hpp>
 #include <barchan/tasks/engine.hpp>
+#include <barchan/tasks/id_order.hpp>
 
 namespace barchan {
 
@@ -68,6 +68,8 @@ void Simulation::scatter(const std::string& name, std::span<const std::int64_t> 
   if (fault.empty() && values.size() != components * ids.size())
     fault = fmt::format("{} numbers for {} particles: the field '{}' has {} components",
                         values.size(), ids.size(), name, components);
+  if (const std::int64_t twin = twin_among(ids); fault.empty() && twin != 0)
+    fault = fmt::format("particle {} is named twice", twin);
   if (!fault.empty()) throw InputError("Simulation::scatter: " + fault, "");
   engine.scatter(field, ids, values);
 }
@@ -117,12 +119,8 @@ Gathered Simulation::EngineOf<Dim>::gather(const CallerField& field) {
   }
   const auto ids = communicator_.gather_all(std::span<const std::int64_t>(mine.ids));
   const auto values = communicator_.gather_all(std::span<const double>(mine.values));
-  std::vector<std::size_t> order(ids.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return ids[a] < ids[b]; });
   Gathered all;
-  for (const std::size_t k : order) {
+  for (const std::size_t k : order_of(ids)) {
     const auto from = values.begin() + static_cast<std::ptrdiff_t>(k) * field.components;
     all.ids.push_back(ids[k]);
     all.values.insert(all.values.end(), from, from + field.components);

@@ -15,6 +15,7 @@
 #include <barchan/core/model/digest.hpp>
 #include <barchan/tasks/caller_checks.hpp>
 #include <barchan/tasks/engine.hpp>
+#include <barchan/tasks/id_order.hpp>
 
 namespace barchan {
 
@@ -92,6 +93,8 @@ void Simulation::scatter(ParticleField field, std::span<const std::int64_t> ids,
   if (fault.empty() && values.size() != 3 * ids.size())
     fault = fmt::format("{} numbers for {} particles: three each", values.size(), ids.size());
   if (fault.empty() && !are_finite(values)) fault = "a number is not finite";
+  if (const std::int64_t twin = twin_among(ids); fault.empty() && twin != 0)
+    fault = fmt::format("particle {} is named twice", twin);
   using F = ParticleField;
   if (field != F::Velocity && field != F::AngularVelocity && field != F::Force &&
       field != F::Torque)
@@ -111,12 +114,11 @@ void Simulation::add(std::span<const ParticleData> newcomers) {
 void Simulation::remove(std::span<const std::int64_t> ids) {
   Engine& engine = between_steps("remove");
   std::string fault = differing_lists(engine.communicator_, {hash_of(ids)});
+  if (const std::int64_t twin = twin_among(ids); fault.empty() && twin != 0)
+    fault = fmt::format("particle {} is named twice", twin);
+  if (!fault.empty()) throw InputError("Simulation::remove: " + fault, "");
   std::vector<std::int64_t> sorted(ids.begin(), ids.end());
   std::sort(sorted.begin(), sorted.end());
-  const auto twin = std::adjacent_find(sorted.begin(), sorted.end());
-  if (fault.empty() && twin != sorted.end())
-    fault = fmt::format("particle {} is named twice", *twin);
-  if (!fault.empty()) throw InputError("Simulation::remove: " + fault, "");
   if (!ids.empty()) engine.remove(sorted);
 }
 

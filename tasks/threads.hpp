@@ -4,6 +4,8 @@
 
 namespace barchan {
 
+inline constexpr int kMostThreads = 1024;  ///< of a rank
+
 /// Threads per rank by default: the node's cores over the ranks on it, but no more than this
 /// process may run on; one where MPI's thread level allows no more. The same on every rank.
 /// Collective.

@@ -208,15 +208,25 @@ def stubs(barchan):
 
 
 def wrong_calls(barchan):
+    import numpy as np
     raises(barchan.InputError, "no.toml", lambda: barchan.Simulation("no.toml"))
     raises(barchan.InputError, "stepp", lambda: barchan.Simulation(DECK, set={"time.stepp": 1}))
     raises(ValueError, "schedule", lambda: barchan.Simulation(DECK, schedule="late"))
+    raises(barchan.InputError, "100000 threads a rank (at most 1024)", lambda: barchan.Simulation(DECK, threads=100000))
     raises(TypeError, "communicator", lambda: barchan.Simulation(DECK, comm="world"))
     raises(TypeError, "cannot hold", lambda: barchan.Simulation({"title": None}))
     with barchan.Simulation(DECK) as sim:
         raises(ValueError, "is not on rank 0", lambda: sim.set_loads([10**6], [[0, 0]]))
         raises(ValueError, "shape", lambda: sim.set_loads([1, 2, 4], [[0, 0]]))
         raises(barchan.InputError, "no particle", lambda: sim.remove([10**6]))
+        raises(ValueError, "ids are whole numbers, not 1.5", lambda: sim.set_loads([1.0, 1.5], [[0, 0], [0, 0]]))
+        raises(ValueError, "types are whole numbers", lambda: sim.add([1.0, 0.8], 0.02, material=0.5))
+        raises(barchan.InputError, "particle 4 is named twice", lambda: sim.scatter("velocity", [4, 2, 4], np.zeros((3, 2))))
+        raises(ValueError, "of barchan's own", lambda: sim.add_field("position"))
+        raises(barchan.InputError, "is no name", lambda: sim.add_field("größe"))
+        raises(barchan.InputError, "is unstable", lambda: sim.add([1.0, 0.8], 1e-4))
+        raises(TypeError, "not an instance of 'function'", lambda: sim.on_progress(1, 5))
+        raises(barchan.InputError, "keep 1 to 1000", lambda: sim.keep_checkpoints("kept", keep=0))
         raises(ValueError, "no field 'mas'", lambda: sim.gather("mas"))
         raises(ValueError, "no material", lambda: sim.add([0, 0], 0.1, material="gold"))
         raises(ValueError, "types of materials", lambda: sim.add([0, 0], 0.1, material=7))

@@ -235,6 +235,7 @@ TEST(Coupling, RefusesWrongCallsInWords) {
   using F = ParticleField;
   expect_words(wrong_scatter(F::Force, unknown, three), "there is no particle 1000000");
   expect_words(wrong_scatter(F::Force, unknown, two), "three each");
+  expect_words(wrong_scatter(F::Force, {4, 4}, {1, 2, 3, 4, 5, 6}), "particle 4 is named twice");
   expect_words(wrong_scatter(F::Radius, unknown, three), "not to be set");
   const auto fixed = std::find_if(s.set.particles.begin(), s.set.particles.end(),
                                   [](const ParticleData& p) { return p.fixed; });

@@ -31,6 +31,15 @@ def field(name: str) -> _barchan.Field:
     return fields[name]
 
 
+def whole(values: Any, what: str) -> np.ndarray:
+    """(n) whole numbers from whatever numbers."""
+    given = np.asarray(values).ravel()
+    numbers = given.astype(np.int64)
+    if given.dtype.kind == "f" and not np.array_equal(numbers, given):
+        raise ValueError(f"{what} are whole numbers, not {given[numbers != given][0]:g}")
+    return numbers
+
+
 def three(v: Vector) -> List[float]:
     v = np.asarray(v, dtype=float).ravel()
     if len(v) not in (2, 3):

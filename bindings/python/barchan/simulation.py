@@ -9,7 +9,7 @@ import numpy as np
 from . import _barchan
 from ._events import Events
 from ._toml import deck_text, value_text
-from ._values import Vector, field as field_of, handle_of, three, turns, vectors
+from ._values import Vector, field as field_of, handle_of, three, turns, vectors, whole
 from .parts import Links, Measures, Wall
 
 __all__ = ["Simulation"]
@@ -151,7 +151,7 @@ class Simulation(Events):
         Raises:
             ValueError: an id of another rank, other shapes, a number that is not finite; nothing is set.
         """
-        ids = np.asarray(ids, dtype=np.int64).ravel()
+        ids = whole(ids, "ids")
         rows = vectors(forces, len(ids), "forces")
         about = np.empty(0) if torques is None else turns(torques, len(ids), "torques")
         self._inside.set_loads(ids, rows, about)
@@ -185,7 +185,7 @@ class Simulation(Events):
         Raises:
             InputError: an id that there is not, other shapes, a number that is not finite; nothing has changed.
         """
-        ids = np.asarray(ids, dtype=np.int64).ravel()
+        ids = whole(ids, "ids")
         if field in self.fields:
             return self._inside.scatter_field(field, ids, np.asarray(values, dtype=float))
         what = field_of(field)
@@ -205,8 +205,11 @@ class Simulation(Events):
         keeps its values.
 
         Raises:
+            ValueError: a name that gather() has for a field of barchan's.
             InputError: no name (letters, digits and _), other components than the field has, more than 256 numbers.
         """
+        if name in _barchan.Field.__members__:
+            raise ValueError(f"{name!r} is a field of barchan's own: give yours another name")
         return self._inside.add_field(name, components)
 
     def contacts(self) -> Links:
@@ -249,7 +252,7 @@ class Simulation(Events):
             if material not in materials:
                 raise ValueError(f"no material is called {material!r}: there are {', '.join(materials)}")
             material = materials.index(material)
-        types = np.broadcast_to(np.asarray(material, dtype=np.int64), n)
+        types = np.broadcast_to(whole(material, "types"), n)
         if density is None:
             known = len(self._inside.info()["materials"])
             if n and not 0 <= types.min() <= types.max() < known:
@@ -257,7 +260,7 @@ class Simulation(Events):
             density = np.array([self._inside.material_density(int(t)) for t in types])
         if ids is None:
             ids = self._inside.highest_id() + 1 + np.arange(n)
-        ids = np.asarray(ids, dtype=np.int64).ravel()
+        ids = whole(ids, "ids")
         if len(ids) != n:
             raise ValueError(f"{len(ids)} ids for {n} particles")
         if np.shape(omega) == (3,):  # one vector for all, of three particles, too
@@ -274,7 +277,7 @@ class Simulation(Events):
         Raises:
             InputError: an id that there is not, or that is named twice; nothing is removed.
         """
-        self._inside.remove(np.asarray(ids, dtype=np.int64).ravel())
+        self._inside.remove(whole(ids, "ids"))
 
     def set_gravity(self, gravity: Vector) -> None:
         """From the next step on [m/s²]. Collective; the same on every rank.
