@@ -274,6 +274,32 @@ def say(digest):
     os.write(1, f"[{digest}]\n".encode())
 
 
+def example(name, *arguments, ranks=1):
+    """What it prints; that it ends well."""
+    environment = {**os.environ, "PYTHONPATH": str(PACKAGES)}
+    command = [sys.executable, str(TREE / "examples/python" / name), *arguments]
+    return subprocess.run(["mpirun", "-n", str(ranks), *command] if ranks > 1 else command, check=True, env=environment,
+                          stdout=subprocess.PIPE, text=True).stdout
+
+
+def examples_under_mpi():
+    assert "theory says" in example("custom_drag.py", ranks=2)
+    try:
+        import mpi4py  # noqa: F401
+    except ImportError:
+        return
+    assert example("sub_communicator.py", ranks=3).count("mean height") == 5
+
+
+def plot_of_a_run():
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError:
+        return
+    example("plot_run.py", "run.out")
+    assert pathlib.Path("run.png").stat().st_size > 10000
+
+
 def inner(kind):
     import barchan
     if kind == "world":
@@ -302,6 +328,7 @@ def main():
         out = subprocess.run(["mpirun", "-n", str(ranks), sys.executable, __file__, sys.argv[1], kind],
                              check=True, stdout=subprocess.PIPE, text=True).stdout
         found[kind] = set(re.findall(r"\[(\w+)\]", out)) - {"none"}
+    examples_under_mpi()
     import barchan
     expected = course(barchan, None, excursions=False)
     assert found["world"] == {expected} and found["mpi4py"] <= {expected}, f"{found}, and {expected} on one rank"
@@ -312,6 +339,7 @@ def main():
     stubs(barchan)
     wrong_calls(barchan)
     from_dicts_and_files(barchan, sys.argv[1])
+    plot_of_a_run()
     help_text = barchan.Simulation.__doc__ + barchan.Simulation.run.__doc__
     assert "RunEnded" in help_text and "InputError" in help_text
     return 0
