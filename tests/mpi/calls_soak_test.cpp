@@ -7,11 +7,13 @@
 #include <cstdint>
 #include <cstdlib>
 #include <random>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <barchan/core/base/error.hpp>
+#include <barchan/core/model/digest.hpp>
 
 #include "coupling.hpp"
 
@@ -27,7 +29,7 @@ class Caller {
   void make_calls(int count) {
     for (int k = 0; k < count; ++k) {
       try {
-        make_one(draw(13));
+        make_one(draw(15));
         log_.push_back(0);
         ++num_made_;
       } catch (const InputError&) {
@@ -74,6 +76,10 @@ class Caller {
         return move_wall();
       case 9:
         return count_links();
+      case 11:
+        return use_field();
+      case 12:
+        return load_in_steps();
       case 10:
         return sim_.save(states_[static_cast<std::size_t>(draw(2))]);
       default:
@@ -88,6 +94,25 @@ class Caller {
       for (std::size_t i = 0; i < views[b].size(); ++i)
         loads[b].set(i, (1.0 + static_cast<double>(views[b].ids()[i] % 3)) * force);
     }
+  }
+
+  /// Adds to a field of the caller's own what tells particles and times apart.
+  void use_field() {
+    const std::string name = draw(2) == 0 ? "a" : "b";
+    sim_.add_field(name, name == "a" ? 1 : 3);
+    for (const ParticleView& view : sim_.owned()) {
+      const auto values = view.field(name);
+      for (std::size_t i = 0; i < values.size(); ++i)
+        values[i][values.width() - 1] += static_cast<double>(view.ids()[i]) * sim_.time();
+    }
+  }
+  void load_in_steps() {
+    if (draw(3) == 0) return sim_.on_step(1, {});
+    sim_.on_step(1 + draw(6), [](const ParticleView& view) {
+      const auto v = view.velocities();
+      const LoadView loads = view.loads();
+      for (std::size_t i = 0; i < v.size(); ++i) loads.set(i, drag(v[i][0], v[i][1], 0.0));
+    });
   }
 
   std::vector<std::int64_t> some_ids() {
@@ -154,6 +179,17 @@ class Caller {
   int num_made_ = 0;
 };
 
+/// Of all fields of the caller's own, the same on every rank. Collective.
+std::uint64_t hash_of_fields(Simulation& sim) {
+  std::uint64_t hash = 0;
+  for (const CallerField& field : sim.fields()) {
+    const Gathered all = sim.gather(field.name);
+    hash = 31 * hash + hash_of_bytes(std::as_bytes(std::span(all.values)));
+  }
+  sim.communicator().bcast(std::as_writable_bytes(std::span(&hash, 1)));
+  return hash;
+}
+
 Words words_of_course(const Scenario& s, MPI_Comm comm, int threads, unsigned seed) {
   Simulation sim(s.model, s.set, comm, with_threads(threads));
   Caller caller(sim, s, seed);
@@ -164,6 +200,7 @@ Words words_of_course(const Scenario& s, MPI_Comm comm, int threads, unsigned se
   } catch (const AgreedError& e) {  // such as an overlap beyond the limit
     words = {sim.digest(), static_cast<std::uint64_t>(sim.step())};
   }
+  words.push_back(hash_of_fields(sim));
   EXPECT_GT(caller.num_made(), 8);  // some are refused, and some end the run
   words.insert(words.end(), caller.log().begin(), caller.log().end());
   return words;
