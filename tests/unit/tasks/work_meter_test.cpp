@@ -21,6 +21,8 @@ TEST(WorkMeter, TakesTheShortestTimeOfAWindow) {
   meter.note(1, 9'000'000, 100, 100);   // 900: the worker was interrupted
   meter.note(0, 2'000'000, 100, 200);   // 100
   meter.note(1, 10'000'000, 100, 200);  // 100
+  meter.note(0, 9'000'000, 100, 300);   // 700: now the other
+  meter.note(1, 12'000'000, 100, 300);  // 200
   meter.end_window();
 
   EXPECT_EQ(meter.weight(0), meter.weight(1));
