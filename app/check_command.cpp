@@ -211,12 +211,17 @@ void print_step(const Model& model, const std::vector<StepLimit>& limits) {
   const double share = model.time.step / limits.front().step;
   if (share > 1.0 && model.time.allow_unstable) {
     std::printf("  Warning: the step is beyond the limit; time.allow_unstable allows that.\n");
-  } else if (share > kAdvisedShare && share <= 1.0) {
+    return;
+  }
+  const StepLimit& tight = tightest(limits);
+  const bool has_heat = std::any_of(limits.begin(), limits.end(),
+                                    [](const StepLimit& l) { return l.safe_share == 1.0; });
+  if (share <= 1.0 && model.time.step > tight.safe()) {
     std::printf("  Warning: the step is %s of its limit (%s); a fifth of it is safe: %.2g s.\n",
-                percent(share).c_str(), limits.front().what.c_str(),
-                kAdvisedShare * limits.front().step);
-  } else if (share <= kAdvisedShare) {
-    std::printf("  The step is within a fifth of every limit.\n");
+                percent(model.time.step / tight.step).c_str(), tight.what.c_str(), tight.safe());
+  } else if (share <= 1.0) {
+    std::printf("  The step is within a fifth of every limit%s.\n",
+                has_heat ? ", of heat within all of it" : "");
   }
 }
 

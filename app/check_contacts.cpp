@@ -95,7 +95,8 @@ std::vector<std::vector<std::string>> rows_of(const LoadedDeck& loaded, std::str
 
 std::string describe(const ContactTable& contacts) {
   return with_law(contacts.law, [&]<class Law>(Law /*law*/) {
-    std::string text = "linear springs and dashpots, friction";
+    std::string text = Law::kIsByRadius ? "linear springs of 2·E·R and dashpots, friction"
+                                        : "linear springs and dashpots, friction";
     if (Law::kStiffens)
       text =
           fmt::format("{}, {}, friction", std::is_base_of_v<Jkr, Law> ? "JKR" : "Hertz",

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -39,6 +40,18 @@ std::string energy_of(const RunSummary& s) {
                      s.measures.gravitational.value());
 }
 
+/// What was lost by what; none where nothing was.
+std::string losses_of(const EnergyBudget& b) {
+  std::string text;
+  for (const auto& [loss, taker] :
+       {std::pair(b.dashpot_loss, "dashpots"), std::pair(b.sliding_loss, "sliding"),
+        std::pair(b.rolling_loss, "rolling"), std::pair(b.bond_loss, "bonds"),
+        std::pair(b.damping_loss, "local damping")}) {
+    if (loss != 0.0) text += fmt::format("{}{} {:.4g} J", text.empty() ? "" : ", ", taker, loss);
+  }
+  return text;
+}
+
 void add_communication(const RunSummary& s, Rows& rows) {
   if (s.ranks == 1) return;
   if (s.choice.is_measured) rows.push_back({"", s.choice.reason});
@@ -66,6 +79,8 @@ void add_state(const RunSummary& s, Rows& rows) {
                                     s.wall_specs[w].name, f.x(), f.y(), z, absent)});
   }
   rows.push_back({"energy", energy_of(s)});
+  const std::string losses = s.budget ? losses_of(*s.budget) : "";
+  if (!losses.empty()) rows.push_back({"", "lost to " + losses});
   rows.push_back({"digest", fmt::format("{:016x}", s.digest)});
 }
 

@@ -284,7 +284,9 @@ void Simulation::EngineOf<Dim>::begin_account() {
   if (!communicator_.is_root()) return;
   ExactSum walls;
   for (const WallState& wall : parts_.world.walls) walls.add(wall.work);
-  parts_.strip.lane(0).brick.works.begin(m.kinetic, m.elastic, m.bonds_elastic, walls);
+  EnergyWorks& works = parts_.strip.lane(0).brick.works;
+  works.begin(m.kinetic, m.elastic, m.bonds_elastic, walls);
+  works.begin_springs(m.sliding_elastic, m.rolling_elastic);
   if (step_ > 0) notes_.add(step_, "the account of energy begins here");
 }
 

@@ -59,6 +59,9 @@ Row row_of(const ParticleStore<Dim>& store, std::int32_t i, ParticleField field)
     case F::Type:
       row.values[0] = store.type[static_cast<std::size_t>(i)];
       break;
+    case F::Temperature:
+      row.values[0] = *store.t(i);
+      break;
   }
   return row;
 }
@@ -76,6 +79,9 @@ void put_value(ParticleStore<Dim>& store, std::int32_t row, ParticleField field,
       break;
     case ParticleField::Force:
       put_load(store, row, value, nullptr);
+      break;
+    case ParticleField::Temperature:
+      store.t(row)[0] = *value, store.t(row)[1] = 0.0;
       break;
     default:
       put_load(store, row, nullptr, value);
@@ -133,18 +139,20 @@ void Simulation::EngineOf<Dim>::scatter(ParticleField field, std::span<const std
   if (is_motion) {
     begin_account();
     book_kinetic(found, -1.0);
-  } else {
+  } else if (field != ParticleField::Temperature) {
     for (Lane<Dim>& lane : parts_.strip.lanes()) make_room(lane.brick.store);
   }
   for (std::size_t k = 0; k < ids.size(); ++k) {
     if (found[k].lane >= 0)
       put_value(parts_.strip.lane(found[k].lane).brick.store, found[k].row, field,
-                values.data() + 3 * k);
+                values.data() + static_cast<std::size_t>(width_of(field)) * k);
   }
-  if (!is_motion) return;
-  book_kinetic(found, 1.0);
-  schedule_.amend(step_, 0, lists_.top_speed());
-  renew_lists();  // ghosts get the new velocities, too
+  if (is_motion) {
+    book_kinetic(found, 1.0);
+    schedule_.amend(step_, 0, lists_.top_speed());
+  }
+  // Ghosts get the new velocities and temperatures, too.
+  if (is_motion || field == ParticleField::Temperature) renew_lists();
 }
 
 template Gathered Simulation::EngineOf<2>::gather(ParticleField);

@@ -69,18 +69,23 @@ void Simulation::EngineOf<Dim>::set_wall_pose(std::size_t wall, const Vec3& poin
 
 template <int Dim>
 void Simulation::EngineOf<Dim>::book_elastic(const std::function<void()>& change) {
-  const auto elastic = [&] { return barchan::measure(parts_).elastic.value(); };
   begin_account();
   const bool accounts = parts_.world.accounts;
-  const double before = accounts ? elastic() : 0.0;
+  const Measures before = accounts ? barchan::measure(parts_) : Measures();
   change();
   if (!accounts) return;
-  const double given = elastic() - before;
+  const Measures after = barchan::measure(parts_);
+  const auto more = [&](ExactSum Measures::*part) {
+    return (after.*part).value() - (before.*part).value();
+  };
+  const double given = more(&Measures::elastic);
   if (!communicator_.is_root()) return;
   // As if the caller had pushed the particles there, against the contacts.
   EnergyWorks& works = parts_.strip.lane(0).brick.works;
   works[EnergyWorks::Callers].add(given);
   works[EnergyWorks::Contacts].add(-given);
+  works[EnergyWorks::Sliding].add(more(&Measures::sliding_elastic));
+  works[EnergyWorks::Rolling].add(more(&Measures::rolling_elastic));
 }
 
 template void Simulation::EngineOf<2>::set_wall_velocity(std::size_t, const Vec3&);

@@ -52,6 +52,7 @@ int width_of(ParticleField field) {
     case ParticleField::Radius:
     case ParticleField::Mass:
     case ParticleField::Type:
+    case ParticleField::Temperature:
       return 1;
     default:
       return 3;

@@ -196,6 +196,7 @@ enum class ParticleField {
   Radius,           ///< [m]
   Mass,             ///< of a fixed particle infinite [kg]
   Type,             ///< index of its material
+  Temperature,      ///< where the model has heat [K]
 };
 
 /// Numbers of a particle: 3 for vectors, in 2D too, else 1.

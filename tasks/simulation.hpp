@@ -197,9 +197,11 @@ class Simulation {
   /// fit, a number that is not finite
   void set_loads(const Loads& loads);
   /// A field of all particles, on rank 0; empty elsewhere. Collective.
+  /// Errors: InputError: temperatures of a model without heat
   [[nodiscard]] Gathered gather(ParticleField field);
-  /// Sets velocities, angular velocities, forces or torques of any particles.
-  /// @param ids, values  the same on every rank; three numbers a particle. Collective.
+  /// Sets velocities, angular velocities, forces, torques or temperatures of any particles.
+  /// @param ids, values  the same on every rank; three numbers a particle, of temperatures one.
+  /// Collective.
   /// Errors: InputError, the same on every rank, and nothing is set: an id that there is not, a
   /// fixed particle that is to move, other lengths, a number that is not finite
   void scatter(ParticleField field, std::span<const std::int64_t> ids,

@@ -82,23 +82,45 @@ void Simulation::set_loads(const Loads& loads) {
   engine.set_loads(loads);
 }
 
+namespace {
+
+/// Empty: there are temperatures, or another field is meant.
+std::string lack_of_heat(const Model& model, ParticleField field) {
+  if (field != ParticleField::Temperature || model.heat.is_on) return {};
+  return "particles have no temperatures: the model has no heat";
+}
+
+}  // namespace
+
 Gathered Simulation::gather(ParticleField field) {
-  return between_steps("gather").gather(field);
+  Engine& engine = between_steps("gather");
+  const std::string fault = lack_of_heat(model(), field);
+  if (!fault.empty()) throw InputError("Simulation::gather: " + fault, "add [heat] to the deck");
+  return engine.gather(field);
 }
 
 void Simulation::scatter(ParticleField field, std::span<const std::int64_t> ids,
                          std::span<const double> values) {
   Engine& engine = between_steps("scatter");
   std::string fault = differing_lists(engine.communicator_, {hash_of(ids), hash_of(values)});
-  if (fault.empty() && values.size() != 3 * ids.size())
+  const auto width = static_cast<std::size_t>(width_of(field));
+  if (fault.empty() && values.size() != width * ids.size() && width == 3)
     fault = fmt::format("{} numbers for {} particles: three each", values.size(), ids.size());
   if (fault.empty() && !are_finite(values)) fault = "a number is not finite";
   if (const std::int64_t twin = twin_among(ids); fault.empty() && twin != 0)
     fault = fmt::format("particle {} is named twice", twin);
   using F = ParticleField;
   if (field != F::Velocity && field != F::AngularVelocity && field != F::Force &&
-      field != F::Torque)
-    fault = "this field is not to be set: velocity, angular velocity, force and torque are";
+      field != F::Torque && field != F::Temperature)
+    fault =
+        "this field is not to be set: velocity, angular velocity, force, torque and temperature "
+        "are";
+  if (fault.empty() && values.size() != width * ids.size())
+    fault = fmt::format("{} numbers for {} particles: one each", values.size(), ids.size());
+  if (fault.empty()) fault = lack_of_heat(model(), field);
+  const auto is_cold = [](double t) { return t < 0.0; };
+  if (fault.empty() && field == F::Temperature && std::ranges::any_of(values, is_cold))
+    fault = "a temperature is below 0 K";
   if (!fault.empty()) throw InputError("Simulation::scatter: " + fault, "");
   engine.scatter(field, ids, values);
 }

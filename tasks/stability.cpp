@@ -163,7 +163,7 @@ std::vector<StepLimit> step_limits(const Model& model, const ParticleSet& partic
   add_plates(model, particles, lightest, speed, limits);
   for (const HeatLimit& heat : heat_limits(model, particles))
     limits.add("heat in " + model.materials[static_cast<std::size_t>(heat.material)].name,
-               heat.step);
+               heat.step, 1.0);
   return limits.sorted();
 }
 
@@ -196,6 +196,12 @@ std::vector<StepLimit> wave_times(const Model& model, const ParticleSet& particl
   return limits.sorted();
 }
 
+const StepLimit& tightest(std::span<const StepLimit> limits) {
+  return *std::min_element(
+      limits.begin(), limits.end(),
+      [](const StepLimit& a, const StepLimit& b) { return a.safe() < b.safe(); });
+}
+
 void check_time_step(const Model& model, std::span<const StepLimit> limits) {
   if (limits.empty() || model.time.allow_unstable || model.time.step <= limits.front().step) return;
   throw InputError(
@@ -203,7 +209,7 @@ void check_time_step(const Model& model, std::span<const StepLimit> limits) {
       fmt::format("time.step = {:g} s is unstable: the limit is {:.3g} s ({})", model.time.step,
                   limits.front().step, limits.front().what),
       fmt::format("use at most {:.3g} s, better {:.2g} s, or set time.allow_unstable = true",
-                  rounded_down(limits.front().step), kAdvisedShare * limits.front().step));
+                  rounded_down(limits.front().step), tightest(limits).safe()));
 }
 
 }  // namespace barchan

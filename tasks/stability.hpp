@@ -9,11 +9,18 @@
 
 namespace barchan {
 
+/// Share of the limit up to which a packing of many contacts is safe and accurate.
+inline constexpr double kAdvisedShare = 0.2;
+
 /// One limit on the time step.
 struct StepLimit {
   std::string what;  ///< such as "contact soil–duct", "damping soil–soil", "bond link, stretching"
-  double step = 0.0;  ///< [s]
+  double step = 0.0;                  ///< [s]
+  double safe_share = kAdvisedShare;  ///< of heat 1: its limit has as many contacts as there may be
+  [[nodiscard]] double safe() const { return safe_share * step; }
 };
+/// The one whose safe step is the smallest. @pre there are limits
+[[nodiscard]] const StepLimit& tightest(std::span<const StepLimit> limits);
 
 /// The limits on the time step of the explicit scheme, smallest first.
 ///
@@ -50,9 +57,6 @@ std::optional<ReferenceImpact> reference_impact(const Model& model, const Partic
 /// kAdvisedShare of it is the custom. Source: Li, Xu & Thornton 2005,
 /// doi:10.1016/j.powtec.2005.09.002. Pure. Same on every rank.
 std::vector<StepLimit> wave_times(const Model& model, const ParticleSet& particles);
-
-/// Share of the limit up to which a packing of many contacts is safe and accurate.
-inline constexpr double kAdvisedShare = 0.2;
 
 /// Refuses a time step beyond the smallest limit, unless the model allows it.
 /// Errors: InputError with the limit and the largest step that would do.

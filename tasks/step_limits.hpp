@@ -25,21 +25,21 @@ inline double spin_gain(int dimension) {
 /// The limits, one entry a name, each the smallest seen.
 class Limits {
  public:
-  void add(const std::string& what, double step) {
+  void add(const std::string& what, double step, double safe_share = kAdvisedShare) {
     if (!(step < kInfinite)) return;
-    const auto [it, is_new] = steps_.try_emplace(what, step);
-    if (!is_new) it->second = std::min(it->second, step);
+    const auto [it, is_new] = steps_.try_emplace(what, StepLimit{what, step, safe_share});
+    if (!is_new) it->second.step = std::min(it->second.step, step);
   }
   [[nodiscard]] std::vector<StepLimit> sorted() const {
     std::vector<StepLimit> limits;
-    for (const auto& [what, step] : steps_) limits.push_back({what, step});
+    for (const auto& [what, limit] : steps_) limits.push_back(limit);
     std::stable_sort(limits.begin(), limits.end(),
                      [](const StepLimit& a, const StepLimit& b) { return a.step < b.step; });
     return limits;
   }
 
  private:
-  std::map<std::string, double> steps_;
+  std::map<std::string, StepLimit> steps_;
 };
 
 /// Adds, for every particle with bonds, the limits of all of them together, under the name of each

@@ -29,6 +29,7 @@ void reduce(const Communicator& communicator, const World<Dim>& world, Measures&
   }
   if (world.accounts) {
     for (ExactSum& work : m.works.sums) sums.push_back(&work);
+    sums.insert(sums.end(), {&m.sliding_elastic, &m.rolling_elastic});
   }
   for (ExactSum& p : m.momentum) sums.push_back(&p);
   for (WallSums& w : walls) {

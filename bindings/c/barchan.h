@@ -154,7 +154,8 @@ enum barchan_field {
   BARCHAN_TYPE = 7,             /* gather only; index of the material, from 0 */
   BARCHAN_SURFACE_SPEED = 8,    /* radius * angular velocity; views only, as what follows [m/s] */
   BARCHAN_INVERSE_MASS = 9,     /* of a fixed particle 0 [1/kg] */
-  BARCHAN_DENSITY = 10          /* [kg/m3], in 2D [kg/m2] */
+  BARCHAN_DENSITY = 10,         /* [kg/m3], in 2D [kg/m2] */
+  BARCHAN_TEMPERATURE = 11      /* gather and scatter only; where the deck has [heat] [K] */
 };
 typedef struct {
   const double* data;
@@ -199,13 +200,13 @@ int barchan_set_loads(barchan_sim* sim, int64_t count, const int64_t* ids, const
 int barchan_clear_loads(barchan_sim* sim); /* of this rank; local */
 /* A field of all particles in order of ids, on rank 0, into arrays of `room` particles; ids and
  * values may be NULL. count: how many there are, on rank 0. Three values a particle, but one of a
- * radius, mass or type. [all] Errors: BARCHAN_WRONG_CALL: no such field, no room */
+ * radius, mass, type or temperature. [all] Errors: BARCHAN_WRONG_CALL: no such field, no room */
 int barchan_gather(barchan_sim* sim, int field, int64_t room, int64_t* ids, double* values,
                    int64_t* count);
-/* Velocities, angular velocities, forces or torques, three values a particle, the same lists on
- * every rank. [all]
+/* Velocities, angular velocities, forces or torques, three values a particle, or temperatures, one
+ * each; the same lists on every rank. [all]
  * Errors: BARCHAN_WRONG_INPUT, and nothing is set: lists that differ, an id that there is not, a
- * fixed particle that is to move, a number that is not finite */
+ * fixed particle that is to move, a number that is not finite, temperatures without [heat] */
 int barchan_scatter(barchan_sim* sim, int field, int64_t count, const int64_t* ids,
                     const double* values);
 

@@ -27,6 +27,7 @@ barchan::ParticleField field_of(int field) {
   constexpr std::array kFields{F::Position, F::Velocity, F::AngularVelocity,
                                F::Force,    F::Torque,   F::Radius,
                                F::Mass,     F::Type};
+  if (field == BARCHAN_TEMPERATURE) return F::Temperature;
   require(field >= 0 && static_cast<std::size_t>(field) < kFields.size(),
           "this field is not to be gathered or scattered");
   return kFields[static_cast<std::size_t>(field)];
@@ -79,8 +80,9 @@ int barchan_gather(barchan_sim* sim, int field, int64_t room, int64_t* ids, doub
 int barchan_scatter(barchan_sim* sim, int field, int64_t count, const int64_t* ids,
                     const double* values) {
   return with(sim, [&](Simulation& s) {
+    const int width = width_of(field_of(field));
     s.scatter(field_of(field), list_of(ids, count, "barchan_scatter: ids are NULL"),
-              list_of(values, 3 * count, "barchan_scatter: values are NULL"));
+              list_of(values, width * count, "barchan_scatter: values are NULL"));
   });
 }
 

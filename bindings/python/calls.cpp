@@ -277,7 +277,8 @@ void define_calls(py::module_& m) {
       .value("torque", F::Torque)
       .value("radius", F::Radius)
       .value("mass", F::Mass)
-      .value("type", F::Type);
+      .value("type", F::Type)
+      .value("temperature", F::Temperature);
   py::enum_<LinkKind>(m, "LinkKind")
       .value("contacts", LinkKind::Contacts)
       .value("wall_contacts", LinkKind::WallContacts)

@@ -7,6 +7,7 @@
 
 #include <barchan/core/base/exact_sum.hpp>
 #include <barchan/core/base/rows.hpp>
+#include <barchan/core/laws/losses.hpp>
 #include <barchan/core/particles/particle_store.hpp>
 
 namespace barchan {
@@ -22,9 +23,14 @@ struct EnergyWorks {
     Callers,       ///< forces and torques that a caller gives, velocities that it sets or adds
     LocalDamping,  ///< takes, so it is negative
     Departed,      ///< kinetic energy of particles that have left
+    Dashpots,      ///< of what contacts have taken, what did so (Losses)
+    Sliding,       ///< and springs across the normal
+    Rolling,       ///< and springs against rolling and twisting
     StartKinetic,  ///< energies where the account began
     StartContacts,
     StartBonds,
+    StartSliding,  ///< what such springs stored then
+    StartRolling,
     StartWalls,  ///< what walls had done by then
     Begun,       ///< 1: there is an account
     kNumParts
@@ -38,6 +44,16 @@ struct EnergyWorks {
   /// Begins an account, on one brick of all.
   void begin(const ExactSum& kinetic, const ExactSum& elastic, const ExactSum& bonds_elastic,
              const ExactSum& walls);
+  /// @param sliding, rolling  what such springs store
+  void begin_springs(const ExactSum& sliding, const ExactSum& rolling) {
+    (*this)[StartSliding] = sliding;
+    (*this)[StartRolling] = rolling;
+  }
+  void add(const Losses& losses) {
+    (*this)[Dashpots].add(losses.dashpots);
+    (*this)[Sliding].add(losses.sliding);
+    (*this)[Rolling].add(losses.rolling);
+  }
   void add(const EnergyWorks& other) {
     for (std::size_t p = 0; p < kNumParts; ++p) sums[p].add(other.sums[p]);
   }

@@ -13,6 +13,8 @@ void Measures::add(const Measures& other) {
   elastic.add(other.elastic);
   gravitational.add(other.gravitational);
   bonds_elastic.add(other.bonds_elastic);
+  sliding_elastic.add(other.sliding_elastic);
+  rolling_elastic.add(other.rolling_elastic);
   works.add(other.works);
   heat.add(other.heat);
   heat_capacity.add(other.heat_capacity);
@@ -66,6 +68,17 @@ bool holds_from_afar(const LawTable& laws, const double* row, const Overlap& ove
 }
 
 template <int Dim>
+void measure_springs(const World<Dim>& world, const double* row, const Overlap& overlap,
+                     const double* history, Measures& m) {
+  const ContactLawIn<Dim>& law = world.laws.law().template in<Dim>();
+  m.elastic.add(law.energy(row, overlap, history));
+  if (!world.accounts || law.stored == nullptr) return;
+  const Losses stored = law.stored(row, overlap, history);
+  m.sliding_elastic.add(stored.sliding);
+  m.rolling_elastic.add(stored.rolling);
+}
+
+template <int Dim>
 void measure_pairs(const Brick<Dim>& brick, const PairList& list, const PairBlock& block,
                    Measures& m) {
   const ParticleStore<Dim>& store = brick.store;
@@ -89,7 +102,7 @@ void measure_pairs(const Brick<Dim>& brick, const PairList& list, const PairBloc
     const Overlap overlap{depth, store.inverse_radius(i) + store.inverse_radius(j), reach};
     const double* row = laws.row(list.code[k]);
     if (!touches && !holds_from_afar<Dim>(laws, row, overlap, history)) return;
-    m.elastic.add(law.energy(row, overlap, history));
+    measure_springs(*brick.world, row, overlap, history, m);
     if (!touches) return;
     m.max_overlap = std::max(m.max_overlap, depth);
     m.max_overlap_share =
@@ -116,7 +129,7 @@ void measure_wall_contacts(const Brick<Dim>& brick, Measures& m) {
         world.laws.code(world.wall_specs[w].material, store.type[static_cast<std::size_t>(c.row)]));
     const Overlap at{overlap, store.inverse_radius(c.row), store.radius(c.row)};
     if (overlap <= 0.0 && !holds_from_afar<Dim>(world.laws, row, at, c.history)) continue;
-    m.elastic.add(world.laws.law().template in<Dim>().energy(row, at, c.history));
+    measure_springs(world, row, at, c.history, m);
     if (overlap <= 0.0) continue;
     m.max_overlap = std::max(m.max_overlap, overlap);
     m.max_overlap_share = std::max(m.max_overlap_share, overlap / store.radius(c.row));
@@ -155,6 +168,9 @@ EnergyBudget budget_of(const Measures& m, double wall_work) {
   b.gravity_work = of(E::Gravity);
   b.caller_work = of(E::Callers);
   b.contact_loss = b.wall_work - of(E::Contacts) - (contacts - of(E::StartContacts));
+  b.dashpot_loss = of(E::Dashpots);
+  b.sliding_loss = of(E::Sliding) - (m.sliding_elastic.value() - of(E::StartSliding));
+  b.rolling_loss = of(E::Rolling) - (m.rolling_elastic.value() - of(E::StartRolling));
   b.bond_loss = -of(E::Bonds) - (bonds - of(E::StartBonds));
   b.damping_loss = -of(E::LocalDamping);
   b.departed = of(E::Departed);

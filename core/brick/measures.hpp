@@ -13,8 +13,10 @@ struct Measures {
   static constexpr double kNever = std::numeric_limits<double>::infinity();
   ExactSum kinetic, elastic, gravitational;  ///< [J]
   ExactSum bonds_elastic;                    ///< the part of `elastic` that bonds have [J]
-  ExactSum momentum[3];                      ///< [N·s]
-  std::int64_t contacts = 0;                 ///< touching pairs without a bond, each once
+  /// The parts that tangential springs, and those of rolling and twisting have; with output.energy.
+  ExactSum sliding_elastic, rolling_elastic;
+  ExactSum momentum[3];       ///< [N·s]
+  std::int64_t contacts = 0;  ///< touching pairs without a bond, each once
   std::int64_t bonds = 0, broken_bonds = 0;
   double max_overlap = 0.0;        ///< [m], with particles or walls
   double max_overlap_share = 0.0;  ///< of the smaller radius
@@ -35,6 +37,9 @@ struct EnergyBudget {
   /// Dashpots, sliding and rolling, and what forms and breaks where surfaces or liquid pull: what
   /// contacts have taken and do not hold.
   double contact_loss = 0.0;
+  /// Of it, as each contact tells step by step (Losses), less what springs hold. The rest is what
+  /// contacts that form and break set free, and what the finite step makes.
+  double dashpot_loss = 0.0, sliding_loss = 0.0, rolling_loss = 0.0;
   double bond_loss = 0.0;     ///< dashpots, and what broken bonds held
   double damping_loss = 0.0;  ///< local damping
   double departed = 0.0;      ///< kinetic energy of particles that have left

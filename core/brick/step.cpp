@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include <barchan/core/brick/dissipation.hpp>
 #include <barchan/core/brick/halo.hpp>
 #include <barchan/core/brick/heat.hpp>
 #include <barchan/core/brick/packing.hpp>
@@ -91,6 +92,7 @@ void Step<Dim>::run_chunk(int chunk) {
 template <int Dim>
 void Step<Dim>::run_block(RowBlock& block) {
   const PairJob pairs = job(brick_.pairs, block, brick_.travel);
+  if (counts_losses()) dissipate(brick_, pairs, frame_.kick, true);
   if (brick_.prefetches)
     run_with_prefetch(brick_, block, pairs);
   else
@@ -115,6 +117,8 @@ void Step<Dim>::add_extras(Rows rows) {
   book(EnergyWorks::Bonds);
   brick_.walls.add_to_rows(store, wall_frame(frame_), brick_.wall_sums, rows.begin, rows.end);
   book(EnergyWorks::Contacts);
+  dissipate(brick_, wall_losses_);
+  wall_losses_.clear();
   if (store.external.empty()) return;
   constexpr auto kForce = std::size_t{Layout<Dim>::kForce};
   const auto from = static_cast<std::size_t>(rows.begin) * kForce,
@@ -185,6 +189,7 @@ void Step<Dim>::finish_band(Side side) {
     compute_bonds(side == Side::Left ? BondSet<Dim>::Left : BondSet<Dim>::Right);
   for (PairBlock& block : band.blocks) {
     const PairJob pairs = job(band.across, block, 0.5 * (brick_.travel + band.travel));
+    if (counts_losses()) dissipate(brick_, pairs, frame_.kick, side == Side::Left);
     world.kernels.pairs(pairs);
     if (brick_.store.has_heat) conduct(brick_, pairs);
   }

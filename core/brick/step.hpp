@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include <barchan/core/brick/brick.hpp>
 #include <barchan/core/brick/lists.hpp>
@@ -32,8 +33,13 @@ class Step {
   void finish_right_band(std::span<const double> results);
 
  private:
-  [[nodiscard]] typename WallContacts<Dim>::Frame wall_frame(const StepFrame& frame) const {
-    return {brick_.world->wall_view(), &brick_.world->laws, frame.last_dt};
+  /// What contacts lose is of use.
+  [[nodiscard]] bool counts_losses() const {
+    return brick_.world->accounts || brick_.world->heat.dissipates;
+  }
+  [[nodiscard]] typename WallContacts<Dim>::Frame wall_frame(const StepFrame& frame) {
+    return {brick_.world->wall_view(), &brick_.world->laws, frame.last_dt, frame.kick,
+            counts_losses() ? &wall_losses_ : nullptr};
   }
   /// The pairs of a block that are worked on.
   [[nodiscard]] PairJob job(PairList& list, PairBlock& block, double travel);
@@ -53,6 +59,7 @@ class Step {
   std::int32_t rows_done_ = 0;  ///< of those away from bands
   std::int64_t num_steps_ = 0;
   WorkAccount<Dim> account_;
+  std::vector<WallLoss> wall_losses_;  ///< of the rows that are being finished
 };
 
 /// After rows have come and gone, and lists have another skin: what is quick.

@@ -22,7 +22,7 @@ static_assert(std::endian::native == std::endian::little,
               "checkpoints are written as memory has them");
 
 constexpr std::array<char, 8> kMagic{'b', 'a', 'r', 'c', 'h', 'a', 'n', '\n'};
-constexpr std::uint32_t kVersion = 8;
+constexpr std::uint32_t kVersion = 9;
 constexpr std::size_t kAlign = 64;
 
 struct DiskHeader {

@@ -92,6 +92,7 @@ void put_heat(ByteWriter& out, const Model& model) {
   out.put(model.heat.is_on);
   if (!model.heat.is_on) return;
   out.put(model.heat.temperature);
+  out.put(model.heat.dissipation);
   for (const Material& m : model.materials) out.put(m.conductivity), out.put(m.heat_capacity);
   for (const WallSpec& w : model.walls) {
     out.put(w.temperature.has_value());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -25,6 +26,19 @@ std::string keys_of() {
   for (const LawKey& key : Law::keys())
     names += (names.empty() ? "" : ", ") + std::string(key.name);
   return names;
+}
+
+/// What `keys_of` are those of.
+template <class Law>
+std::string title_of() {
+  return Law::kIsByRadius ? Law::kChoice : fmt::format("\"{}\"", Law::kName);
+}
+
+/// What to do in [contact] for keys of the other law.
+template <class Law, class Other>
+std::string change_to() {
+  const bool is_given = Law::kIsByRadius && std::is_same_v<Other, LinearSpring>;
+  return is_given ? "leave stiffness out" : fmt::format("write {}", Other::kChoice);
 }
 
 /// A key of [[material]] alone has been refused in a [[pair]] already.
@@ -66,7 +80,8 @@ void refuse_unchosen(const LawChoice& choice, const TableReader& table, const La
   const auto [chooser, wanted] = choice_for(key.part);
   table.fail(key.name,
              fmt::format("'{}' has no place without contact.{} = {}", key.name, chooser, wanted),
-             fmt::format("write {} = {} in [contact], or leave it out", chooser, wanted));
+             fmt::format("write {} = {}{} in [contact], or leave it out", chooser, wanted,
+                         key.part == LawKey::Part::Dmt ? " or model = \"jkr\"" : ""));
 }
 
 template <class Law, class Other>
@@ -74,10 +89,9 @@ void refuse_keys_of(const LawChoice& choice, const TableReader& table, bool is_p
   for (const LawKey& key : Other::keys()) {
     if (has_key<Law>(key.name) || !stands(table, key, is_pair)) continue;
     refuse_unchosen(choice, table, key);
-    table.fail(key.name,
-               fmt::format("'{}' has no place where contact.model = \"{}\"", key.name, Law::kName),
-               fmt::format("\"{}\" has {}; or write model = \"{}\" in [contact]", Law::kName,
-                           keys_of<Law>(), Other::kName));
+    table.fail(key.name, fmt::format("'{}' has no place where contact.{}", key.name, Law::kChoice),
+               fmt::format("{} has {}; or {} in [contact]", title_of<Law>(), keys_of<Law>(),
+                           change_to<Law, Other>()));
   }
 }
 
@@ -135,6 +149,11 @@ LawChoice read_law(const TableReader& contact) {
   choice.adhesion = adhesion_of(contact.string("adhesion"));
   const bool turns = choice.rolls || choice.twists, sticks = choice.adhesion != Adhesion::None;
   choice.attracts = model == Jkr::kName;
+  choice.is_by_radius = contact.string("stiffness") == "radius";
+  if (model != "linear" && contact.has("stiffness"))
+    contact.fail("stiffness",
+                 fmt::format("'stiffness' has no place where contact.model = \"{}\"", model),
+                 "leave it out: these contacts are as stiff as their moduli and radii make them");
   if (choice.attracts && sticks)
     contact.fail("adhesion", "jkr contacts have an attraction of their own",
                  "write model = \"hertz\", or leave adhesion out");
@@ -146,7 +165,8 @@ LawChoice read_law(const TableReader& contact) {
     contact.fail("adhesion", "linear contacts do not stick",
                  "write model = \"hertz\", or leave adhesion out");
   while (with_law(choice.law, [&]<class Law>(Law /*law*/) {
-    return model != Law::kName || turns != Law::kRolls || !Law::sticks_by(choice.adhesion);
+    return model != Law::kName || turns != Law::kRolls || choice.is_by_radius != Law::kIsByRadius ||
+           !Law::sticks_by(choice.adhesion);
   }))
     ++choice.law;
   if (const auto fault = find_law_fault(choice.law, choice.twists, contact.dimension()))

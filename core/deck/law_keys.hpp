@@ -12,6 +12,7 @@ struct LawChoice {
   int law = 0;         ///< place in the list of laws
   bool rolls = false;  ///< keys of rolling have a place
   bool twists = false;
+  bool is_by_radius = false;  ///< linear springs that follow from moduli and radii
   Adhesion adhesion = Adhesion::None;
   bool attracts = false;  ///< jkr
 };

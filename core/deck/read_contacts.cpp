@@ -125,6 +125,11 @@ class ContactBuilder {
       }
     }
     refuse_idle(table);
+    for (std::size_t a = 0; a < num_; ++a) {
+      for (std::size_t b = a; b < num_; ++b) {
+        if (users.can_meet(a, b)) refuse_without_spring(a, b, table.constants[a * num_ + b]);
+      }
+    }
     return table;
   }
 
@@ -189,7 +194,7 @@ class ContactBuilder {
           "materials",
           fmt::format("'{}' has no constants of its own, from which those of the pair follow",
                       draft_.deck.model.materials[m].name),
-          "add young_modulus and poisson_ratio to the material, or, for walls, rigid = true");
+          find_gap(rules_.choice.law, {})->remedy);
     }
     return mixed_of(a, b);
   }
@@ -248,6 +253,21 @@ class ContactBuilder {
     if (rules_.choice.twists && !has(&ContactConstants::mu))
       fail("twisting", "twisting acts by friction, and no pair of materials has friction",
            "add friction to the materials, or leave twisting out");
+  }
+
+  /// Resistance to rolling goes by the tangential spring, unless it has one of its own.
+  void refuse_without_spring(std::size_t a, std::size_t b, const ContactConstants& pair) const {
+    if (!rules_.choice.rolls || pair.mu_rolling == 0.0 || pair.kr > 0.0 || pair.cr > 0.0) return;
+    const bool is_elastic = pair.young_star > 0.0;
+    if (is_elastic ? pair.mu > 0.0 : pair.kt > 0.0) return;
+    throw InputError(
+        draft_.materials.place(static_cast<int>(b)),
+        fmt::format(
+            "contacts of {} have rolling_friction, and no stiffness to resist rolling with: "
+            "{} is zero",
+            pair_name(a, b), is_elastic ? "friction" : "tangential_stiffness"),
+        fmt::format("give them {}, or rolling_stiffness",
+                    is_elastic ? "friction" : "tangential_stiffness"));
   }
 
   void refuse_rigid_particles(const Users& users) const {

@@ -11,7 +11,7 @@ namespace barchan::deck {
 void read_heat(const TableReader& root, DeckDraft& draft) {
   if (!root.has("heat")) return;
   const TableReader table(*root.table("heat"), root.dimension(), "[heat]");
-  draft.deck.model.heat = {true, table.number("temperature")};
+  draft.deck.model.heat = {true, table.number("temperature"), table.boolean("dissipation")};
 }
 
 std::optional<double> heat_number(const TableReader& table, std::string_view key,

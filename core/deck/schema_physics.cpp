@@ -33,6 +33,10 @@ constexpr KeySpec kPhysicsKeys[] = {
      "`poisson_ratio`, in 3D; `jkr`: the same with surfaces that attract each other, by "
      "`surface_energy`",
      "linear|hertz|jkr"},
+    {"[contact]", "stiffness", T::Choice, "", "given",
+     "of linear contacts: `given` by `normal_stiffness` and `tangential_stiffness`; `radius`: by "
+     "`young_modulus` and the radii, 2·E·R",
+     "given|radius"},
     {"[contact]", "tangential", T::Choice, "", "mindlin",
      "of hertz and jkr contacts: `mindlin` adds up increments of force and takes back on unloading "
      "what the smaller area cannot bear; `mindlin-displacement` multiplies displacement by "

@@ -58,6 +58,9 @@ constexpr KeySpec kRunKeys[] = {
 
     {"[heat]", "temperature", T::NonNegativeNumber, "K", "293.15",
      "at the start, of particles that say nothing else"},
+    {"[heat]", "dissipation", T::Boolean, "", "false",
+     "what dashpots, sliding and rolling take in contacts warms the particles: half of it each, at "
+     "a wall all of it the particle"},
 
     {"[search]", "kind", T::Choice, "", "cells",
      "`cells` with lists of candidates, or every pair with every other, as a reference",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include <barchan/core/kernels/contact_losses.hpp>
 #include <barchan/core/kernels/law_view.hpp>
 #include <barchan/core/kernels/pair_job.hpp>
 #include <barchan/core/laws/contact.hpp>
@@ -29,6 +30,13 @@ struct ContactLawIn {
   double (*stable_step)(const double* row, const Overlap& overlap, double mass) = nullptr;
   /// Squared radius of the contact, through which heat flows [m²]; not above zero: none does.
   double (*area)(const double* row, const Overlap& overlap) = nullptr;
+  /// What a contact loses in the step that `respond` is about to make, which has this history; null
+  /// where the law does not say.
+  Losses (*losses)(int level, const double* row, const State& pair, const LossTimes& times,
+                   const double* history) = nullptr;
+  /// Of the elastic energy of a contact the parts that sliding and rolling have stored [J]; null as
+  /// above.
+  Losses (*stored)(const double* row, const Overlap& overlap, const double* history) = nullptr;
 };
 
 /// A law of contact as the program sees it, whichever it is. Made from the law's file alone.
@@ -54,7 +62,7 @@ struct ContactLaw {
 namespace detail {
 
 /// The compile-time level is looked for.
-template <class Law, int Dim, int Level = 0>
+template <class Law, int Dim, int Level>
 PairForce<simd::Scalar, Dim> respond_at(int level, const double* row,
                                         const TurningPair<simd::Scalar, Dim>& pair, double dt,
                                         double* history) {
@@ -78,7 +86,7 @@ ContactLawIn<Dim> law_in() {
   if constexpr (Dim == 2 && !Law::kIsForDisks) {
     return {};
   } else {
-    ContactLawIn<Dim> law{Law::template kHistory<Dim>, &respond_at<Law, Dim>,
+    ContactLawIn<Dim> law{Law::template kHistory<Dim>, &respond_at<Law, Dim, 0>,
                           [](const double* row, const Overlap& overlap, const double* history) {
                             return Law::energy(row, Law::template kHistory<Dim>, overlap, history);
                           }};
@@ -86,6 +94,10 @@ ContactLawIn<Dim> law_in() {
       law.stable_step = [](const double* row, const Overlap& overlap, double mass) {
         return Law::stable_step(row, overlap, mass, Layout<Dim>::kSpinGain);
       };
+    }
+    if constexpr (requires { Law::kKeepsForce; }) {
+      law.losses = &losses_at<Law, Dim>;
+      law.stored = &stored_in<Law, Dim>;
     }
     law.area = [](const double* row, const Overlap& overlap) {
       if constexpr (requires { Law::area(row, overlap); })

@@ -6,6 +6,7 @@
 
 #include <barchan/core/kernels/law_table.hpp>
 #include <barchan/core/model/mass.hpp>
+#include <barchan/core/model/relative_speed.hpp>
 
 namespace barchan {
 namespace {
@@ -64,6 +65,17 @@ double most_around(double r, double s, int dimension) {
   return 4.0 * (dimension == 2 ? ratio : ratio * ratio);
 }
 
+/// By hundreds of impacts at once [K].
+double largest_heating(const Model& model, const ParticleSet& set) {
+  constexpr double kImpacts = 1000.0;
+  const double speed = relative_speed(model, set);
+  double capacity = kInfinite;
+  for (const Material& m : model.materials) {
+    if (m.heat_capacity > 0.0) capacity = std::min(capacity, m.heat_capacity);
+  }
+  return kImpacts * speed * speed / capacity;
+}
+
 /// Of the start and of walls, and what fluxes may add until the end [K].
 double largest_difference(const Model& model, const ParticleSet& set,
                           const std::vector<Made>& made) {
@@ -80,8 +92,16 @@ double largest_difference(const Model& model, const ParticleSet& set,
     if (m.exists()) warming = std::max(warming, m.largest * m.largest / m.capacity);
   }
   const double time = static_cast<double>(model.time.num_steps) * model.time.step;
-  const double difference = high - low + 4.0 * flux * warming * time;
+  double difference = high - low + 4.0 * flux * warming * time;
+  if (model.heat.dissipation) difference += largest_heating(model, set);
   return difference > 0.0 ? difference : 1.0;
+}
+
+/// Into a particle whose contacts are as strong as forces may be, and slide as fast as particles
+/// are [W].
+double largest_dissipation(const Model& model, const ParticleSet& set) {
+  constexpr double kRoom = 16.0;
+  return kRoom * force_grain(model, set).most() * relative_speed(model, set);
 }
 
 }  // namespace
@@ -89,6 +109,7 @@ double largest_difference(const Model& model, const ParticleSet& set,
 HeatTable::HeatTable(const Model& model, const ForceGrain& of_flows) {
   if (!model.heat.is_on) return;
   is_on = true;
+  dissipates = model.heat.dissipation;
   start = model.heat.temperature;
   grain = of_flows;
   num_materials = model.materials.size();
@@ -143,6 +164,7 @@ ForceGrain heat_grain(const Model& model, const ParticleSet& particles) {
     }
   }
   most *= largest_difference(model, particles, made);
+  if (model.heat.dissipation) most += largest_dissipation(model, particles);
   if (!(most > 0.0) || !std::isfinite(most)) return grain;
   int exponent = 0;
   (void)std::frexp(most / ForceGrain{}.most(), &exponent);

@@ -18,8 +18,9 @@ namespace barchan {
 /// of disks is ours: a bar as wide as the contact and as long as the two radii.
 struct HeatTable {
   bool is_on = false;
-  double start = 0.0;  ///< of particles that do not say [K]
-  ForceGrain grain;    ///< of flows, in W instead of N
+  bool dissipates = false;  ///< what contacts lose warms their particles
+  double start = 0.0;       ///< of particles that do not say [K]
+  ForceGrain grain;         ///< of flows, in W instead of N
   std::size_t num_materials = 0;
   std::vector<double> conductivity;   ///< k of pairs of materials [W/(m·K)]
   std::vector<double> heat_capacity;  ///< of materials [J/(kg·K)]
@@ -49,9 +50,9 @@ struct HeatLimit {
 /// Of materials that particles are made of. Pure; the same on every rank.
 [[nodiscard]] std::vector<HeatLimit> heat_limits(const Model& model, const ParticleSet& particles);
 
-/// The grain of heat flows: the finest one with which a particle may have the widest contacts all
-/// around, and of each the largest difference of temperature that there may be. Pure; the same on
-/// every rank. @param particles  of the start
+/// The grain of heat flows: the finest one for a particle with the widest contacts all around, and
+/// of each the largest difference of temperature, beside what the strongest contacts may lose.
+/// Pure; the same on every rank. @param particles  of the start
 [[nodiscard]] ForceGrain heat_grain(const Model& model, const ParticleSet& particles);
 
 }  // namespace barchan

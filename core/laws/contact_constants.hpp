@@ -28,17 +28,18 @@ struct ContactConstants {
   bool is_mixed = false;              ///< from the constants of two materials
 
   // linear
-  double kn = 0.0;  ///< normal stiffness [N/m]
-  double kt = 0.0;  ///< tangential stiffness [N/m]
+  double kn = 0.0;              ///< normal stiffness [N/m]
+  double kt = 0.0;              ///< tangential stiffness [N/m]
+  double kt_ratio = 2.0 / 7.0;  ///< kt/kn, where springs follow from E and the radii
   Dashpot cn;
   Dashpot ct;
 
-  // Hertz: a material's own moduli, which a pair of one material with itself keeps
+  // elastic: a material's own moduli, which a pair of one material with itself keeps
   double young_modulus = 0.0;           ///< E [Pa]
   std::optional<double> poisson_ratio;  ///< nu
   bool is_rigid = false;                ///< 1/E = 0
   // and what two materials have together
-  double young_star = 0.0;        ///< E* [Pa]
+  double young_star = 0.0;        ///< Hertz: E*; linear: the harmonic mean of E [Pa]
   double shear_star = 0.0;        ///< G* [Pa]
   double alpha = 0.0;             ///< of the normal dashpot alpha·sqrt(m_eff·4/3·E*·a)
   double tangential_ratio = 1.0;  ///< tangential over normal dashpot

@@ -35,7 +35,8 @@ double secant(const Pair& p, double radius, double overlap) {
 }  // namespace
 
 const std::array<LawKey, HertzMindlin::kNumKeys> HertzMindlin::kKeys{{
-    {"young_modulus", Range::Positive, "Pa", "none", "E; hertz contacts require it",
+    {"young_modulus", Range::Positive, "Pa", "none",
+     "E; hertz contacts require it, and linear ones with `contact.stiffness = \"radius\"`",
      [](Pair& p, double value) { p.young_modulus = value; }, -1, true},
     {"poisson_ratio", Range::Poisson, "", "none", "beside `young_modulus`",
      [](Pair& p, double value) { p.poisson_ratio = value; }, -1, true},

@@ -8,6 +8,7 @@
 #include <barchan/core/laws/contact_constants.hpp>
 #include <barchan/core/laws/history.hpp>
 #include <barchan/core/laws/law_key.hpp>
+#include <barchan/core/laws/losses.hpp>
 #include <barchan/core/laws/mindlin.hpp>
 
 namespace barchan {
@@ -31,6 +32,8 @@ struct HertzMindlin : RespondsByTouch<HertzMindlin> {
   static constexpr const char* kName = "hertz";
   /// Disks of unit thickness have no Hertz law.
   static constexpr bool kIsForDisks = false, kRolls = false;
+  static constexpr bool kIsByRadius = false;
+  static constexpr const char* kChoice = "model = \"hertz\"";  ///< in [contact]
   static constexpr bool sticks_by(Adhesion adhesion) { return adhesion == Adhesion::None; }
 
   // ---- what a deck says of a pair of materials (hertz_mindlin.cpp)
@@ -80,6 +83,12 @@ struct HertzMindlin : RespondsByTouch<HertzMindlin> {
     return acts(p) ? 4.0 * p.shear_star / p.young_star * stiffness(p, impact) : 0.0;
   }
   static double tangential_stiffness(const double* row, const Overlap& overlap);
+  static constexpr bool kKeepsForce = true;  ///< in its history
+  static KeptContact kept_contact(const double* row, const double* numbers,
+                                  const KeptContact& /*now*/) {
+    const double a = numbers[3] > 0.0 ? numbers[3] : 0.0;
+    return {row[Kt] * a, a * a};
+  }
   /// Of a pair that overlaps as it does now [s]. @param mass  reduced [kg]
   static double stable_step(const double* row, const Overlap& overlap, double mass,
                             double spin_gain) {

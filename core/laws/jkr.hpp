@@ -26,6 +26,7 @@ namespace barchan {
 /// doi:10.1016/0032-5910(91)80178-L (friction); Marshall 2009, doi:10.1016/j.jcp.2008.10.020.
 struct Jkr : HertzMindlin, RespondsByTouch<Jkr> {
   static constexpr const char* kName = "jkr";
+  static constexpr const char* kChoice = "model = \"jkr\"";  ///< in [contact]
 
   // ---- what a deck says of a pair of materials (jkr.cpp)
 

@@ -6,6 +6,7 @@
 #include <barchan/core/laws/hertz_bridge.hpp>
 #include <barchan/core/laws/hertz_mindlin.hpp>
 #include <barchan/core/laws/jkr.hpp>
+#include <barchan/core/laws/linear_by_radius.hpp>
 #include <barchan/core/laws/linear_spring.hpp>
 #include <barchan/core/laws/rolling.hpp>
 
@@ -18,9 +19,10 @@ struct LawList {
 
 /// The laws of contact, a file each. Kernels, tables, checks, walls and measures follow from this
 /// list. A run has one of them.
-using Laws = LawList<LinearSpring, HertzMindlin, WithRolling<LinearSpring>,
-                     WithRolling<HertzMindlin>, HertzAdhesive, WithRolling<HertzAdhesive>, Jkr,
-                     WithRolling<Jkr>, HertzBridge, WithRolling<HertzBridge>>;
+using Laws =
+    LawList<LinearSpring, HertzMindlin, WithRolling<LinearSpring>, WithRolling<HertzMindlin>,
+            HertzAdhesive, WithRolling<HertzAdhesive>, Jkr, WithRolling<Jkr>, HertzBridge,
+            WithRolling<HertzBridge>, LinearByRadius, WithRolling<LinearByRadius>>;
 
 /// Whether a law is for disks, or for spheres.
 template <class Law, int Dim>

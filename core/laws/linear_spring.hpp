@@ -8,6 +8,7 @@
 #include <barchan/core/laws/contact_constants.hpp>
 #include <barchan/core/laws/history.hpp>
 #include <barchan/core/laws/law_key.hpp>
+#include <barchan/core/laws/losses.hpp>
 
 namespace barchan {
 
@@ -24,6 +25,8 @@ namespace barchan {
 struct LinearSpring : RespondsByTouch<LinearSpring> {
   static constexpr const char* kName = "linear";
   static constexpr bool kIsForDisks = true, kRolls = false;
+  static constexpr bool kIsByRadius = false;  ///< springs follow from a modulus and the radii
+  static constexpr const char* kChoice = "model = \"linear\"";  ///< in [contact]
   static constexpr bool sticks_by(Adhesion adhesion) { return adhesion == Adhesion::None; }
 
   // ---- what a deck says of a pair of materials (linear_spring.cpp)
@@ -80,6 +83,12 @@ struct LinearSpring : RespondsByTouch<LinearSpring> {
   }
   static double tangential_stiffness(const double* row, const Overlap& /*overlap*/) {
     return row[Kt];
+  }
+  static constexpr bool kKeepsForce = false;  ///< in its history: the stretch of the spring
+  /// Springs are as stiff as now, and the history does not tell another area.
+  static KeptContact kept_contact(const double* /*row*/, const double* /*numbers*/,
+                                  const KeptContact& now) {
+    return now;
   }
   /// Calls add(name, mass, stiffness, dashpot) for the motions of a pair [kg, N/m, N·s/m].
   /// @param spin_gain  m r² / I

@@ -105,7 +105,7 @@ void WallContacts<Dim>::search(const ParticleStore<Dim>& store, const WallView<D
           });
     }
   }
-  kept_.assign(loaded_.size(), Force{});
+  kept_.assign(loaded_.size(), Push{{}, Vec3::Zero()});
 }
 
 template <int Dim>
@@ -174,10 +174,12 @@ typename WallContacts<Dim>::Push WallContacts<Dim>::push(const ParticleStore<Dim
   const auto pair = pair_with_wall(store, contact.row, to, state.velocity);
   const auto type = store.type[static_cast<std::size_t>(contact.row)];
   const LawTable& laws = *frame.laws;
-  Push p{
-      laws.law().template in<Dim>().respond(laws.level(), laws.row(laws.code(spec.material, type)),
-                                            pair, frame.dt, contact.history),
-      Vec3::Zero()};
+  const ContactLawIn<Dim>& law = laws.law().template in<Dim>();
+  const double* row = laws.row(laws.code(spec.material, type));
+  Push p{{}, Vec3::Zero()};
+  if (frame.losses != nullptr && law.losses != nullptr)
+    p.losses = law.losses(laws.level(), row, pair, {frame.dt, frame.kick}, contact.history);
+  p.on_particle = law.respond(laws.level(), row, pair, frame.dt, contact.history);
   p.on_wall[0] = -p.on_particle.fx;
   p.on_wall[1] = -p.on_particle.fy;
   if constexpr (Dim == 3) p.on_wall[2] = -p.on_particle.fz;
@@ -190,7 +192,7 @@ void WallContacts<Dim>::press(const ParticleStore<Dim>& store, const Frame& fram
   for (std::size_t k = 0; k < loaded_.size(); ++k) {
     WallContact<Dim>& contact = list_[loaded_[k]];
     const Push p = push(store, frame, loaded_[k], contact);
-    kept_[k] = p.on_particle;
+    kept_[k] = p;
     if (p.on_wall.isZero(0.0)) continue;
     for (int c = 0; c < Dim; ++c)
       sums[static_cast<std::size_t>(contact.wall)].force[c].add(p.on_wall[c]);
@@ -207,15 +209,21 @@ void WallContacts<Dim>::add_to_rows(ParticleStore<Dim>& store, const Frame& fram
   auto kept = std::lower_bound(loaded_.begin(), loaded_.end(),
                                static_cast<std::size_t>(it - list_.begin())) -
               loaded_.begin();
+  const auto note = [&](std::int32_t row, const Losses& losses) {
+    if (frame.losses != nullptr) frame.losses->push_back({row, losses});
+  };
   for (; it != list_.end() && it->row < end; ++it) {
     const auto w = static_cast<std::size_t>(it->wall);
     if (frame.walls.specs[w].is_loaded) {
-      add_to_row(store, it->row, kept_[static_cast<std::size_t>(kept++)]);
+      const Push& p = kept_[static_cast<std::size_t>(kept++)];
+      add_to_row(store, it->row, p.on_particle);
+      note(it->row, p.losses);
       continue;
     }
     if (is_only_warmed(store, frame.walls, *it)) continue;
     const Push p = push(store, frame, static_cast<std::size_t>(it - list_.begin()), *it);
     add_to_row(store, it->row, p.on_particle);
+    note(it->row, p.losses);
     const Vec3& v = frame.walls.states[w].velocity;
     const bool moves = v[0] != 0.0 || v[1] != 0.0 || v[2] != 0.0;
     if (!moves || p.on_wall.isZero(0.0)) continue;

@@ -46,6 +46,12 @@ struct WallPush {
   Vec3 force = Vec3::Zero();    ///< on the particle [N]
 };
 
+/// What a particle loses at a wall in a step.
+struct WallLoss {
+  std::int32_t row = 0;
+  Losses losses;
+};
+
 /// A particle near an image of a wall, with the history of their contact.
 template <int Dim>
 struct WallContact {
@@ -107,7 +113,7 @@ class WallContacts {
   [[nodiscard]] std::span<const WallContact<Dim>> list() const { return list_; }
   [[nodiscard]] std::size_t bytes() const {
     return list_.capacity() * sizeof(WallContact<Dim>) + loaded_.capacity() * sizeof(std::size_t) +
-           kept_.capacity() * sizeof(Force);
+           kept_.capacity() * sizeof(Push);
   }
 
   /// Does the particle feel this contact of the list, or that with a wall which meets this one?
@@ -120,6 +126,9 @@ class WallContacts {
     WallView<Dim> walls;
     const LawTable* laws = nullptr;
     double dt = 0.0;
+    double kick = 0.0;  ///< as in LossTimes, for losses
+    std::vector<WallLoss>* losses =
+        nullptr;  ///< where add_to_rows writes them; null: not asked for
   };
   /// Computes contacts with loaded plates, keeps their forces for add_to_rows, and adds the forces
   /// on the plates to `sums`, one a wall.
@@ -140,6 +149,7 @@ class WallContacts {
   struct Push {
     Force on_particle;
     Vec3 on_wall;
+    Losses losses{};  ///< where the frame asks for them
   };
   /// Of the contact at this place of the list, whose history is carried on in `contact`.
   Push push(const ParticleStore<Dim>& store, const Frame& frame, std::size_t place,
@@ -151,7 +161,7 @@ class WallContacts {
 
   std::vector<WallContact<Dim>> list_;
   std::vector<std::size_t> loaded_;  ///< places in the list of contacts with loaded plates
-  std::vector<Force> kept_;          ///< of each of them
+  std::vector<Push> kept_;           ///< of each of them
 };
 
 extern template class WallContacts<2>;

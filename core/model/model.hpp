@@ -52,6 +52,7 @@ struct Material {
 struct HeatSpec {
   bool is_on = false;
   double temperature = 293.15;  ///< [K], of particles that say nothing else
+  bool dissipation = false;     ///< what contacts lose warms their particles
 };
 
 /// Contact constants of every pair of materials: entry (a, b) = (b, a) = constants[a·n + b].

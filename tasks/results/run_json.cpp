@@ -42,6 +42,15 @@ Json energy_of(const RunSummary& s) {
           {"gravitational", s.measures.gravitational.value()}};
 }
 
+Json budget_of(const EnergyBudget& b) {
+  return {{"wall_work", b.wall_work},       {"gravity_work", b.gravity_work},
+          {"caller_work", b.caller_work},   {"contact_loss", b.contact_loss},
+          {"dashpot_loss", b.dashpot_loss}, {"sliding_loss", b.sliding_loss},
+          {"rolling_loss", b.rolling_loss}, {"bond_loss", b.bond_loss},
+          {"damping_loss", b.damping_loss}, {"departed_energy", b.departed},
+          {"energy_error", b.error}};
+}
+
 Json communication_of(const RunSummary& s) {
   Json json{{"in_flight_seconds", s.in_flight_seconds},
             {"exposed_seconds", s.exposed_seconds},
@@ -145,6 +154,7 @@ void add_further(const RunSummary& s, Json& json) {
                          {"contacts", s.left.links.contacts + s.left.links.wall_contacts},
                          {"bonds", s.left.links.bonds}};
   json["max_speed"] = s.measures.max_speed;
+  if (s.budget) json["energy_budget"] = budget_of(*s.budget);
   if (std::isfinite(s.measures.max_temperature)) {
     json["heat"] = {{"total", s.measures.heat.value()},
                     {"mean_temperature", s.measures.mean_temperature()},

@@ -148,6 +148,7 @@ RunSummary summarize(Simulation& simulation, const std::string& deck,
   summary.gravity = model.gravity.norm();
   summary.limit = limit;
   summary.measures = simulation.measure();
+  if (model.output.energy) summary.budget = simulation.energy_budget(summary.measures);
   summary.wall_specs = model.walls;
   summary.walls.assign(simulation.walls().begin(), simulation.walls().end());
   summary.digest = simulation.digest();

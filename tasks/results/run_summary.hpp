@@ -49,6 +49,7 @@ struct RunSummary {
   std::uint64_t messages = 0, bytes = 0;  ///< sent by all ranks
   std::vector<std::int64_t> owned;        ///< particles of each rank
   Measures measures;
+  std::optional<EnergyBudget> budget;  ///< with output.energy
   std::vector<WallSpec> wall_specs;
   std::vector<WallState> walls;
   std::uint64_t digest = 0;

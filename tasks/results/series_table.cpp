@@ -42,7 +42,8 @@ std::vector<std::string> columns_of(const Model& model, const std::vector<Ring>&
   }
   if (model.output.energy) {
     columns.insert(columns.end(), {"wall_work", "gravity_work", "caller_work", "contact_loss",
-                                   "bond_loss", "damping_loss", "departed_energy", "energy_error"});
+                                   "dashpot_loss", "sliding_loss", "rolling_loss", "bond_loss",
+                                   "damping_loss", "departed_energy", "energy_error"});
   }
   return columns;
 }
@@ -73,7 +74,8 @@ Cells values_of(const Simulation& simulation, const Measures& m, const Cells& di
   if (model.output.energy) {
     const EnergyBudget b = simulation.energy_budget(m);
     values.insert(values.end(), {b.wall_work, b.gravity_work, b.caller_work, b.contact_loss,
-                                 b.bond_loss, b.damping_loss, b.departed, b.error});
+                                 b.dashpot_loss, b.sliding_loss, b.rolling_loss, b.bond_loss,
+                                 b.damping_loss, b.departed, b.error});
   }
   return values;
 }

@@ -16,6 +16,7 @@
 #include <barchan/core/model/digest.hpp>
 
 #include "coupling.hpp"
+#include "law_scenarios.hpp"
 
 namespace barchan::test {
 namespace {
@@ -210,9 +211,9 @@ TEST(CallsSoak, CoursesOfRandomCallsAreTheSameOnAnyRanks) {
   const char* wish = std::getenv("BARCHAN_SOAK_COURSES");
   const int num_courses = wish == nullptr ? 2 : std::atoi(wish);
   const Scenario scenarios[] = {breaking_plate(2), plates_at_borders(), rolling_column(),
-                                moving_walls()};
+                                moving_walls(), with_heat(attracting_gas(true), 200.0)};
   for (int course = 0; course < num_courses; ++course) {
-    const Scenario& s = scenarios[(course + num_ranks()) % 4];
+    const Scenario& s = scenarios[(course + num_ranks()) % 5];
     const auto seed = static_cast<unsigned>(course + num_ranks());
     SCOPED_TRACE(s.name + ", course " + std::to_string(seed));
     const Words expected = words_of_course(s, MPI_COMM_SELF, 1, seed);

@@ -69,6 +69,24 @@ inline Scenario rolling_hertz_gas() {
   return s;
 }
 
+/// Linear contacts by moduli and radii, which resist rolling.
+inline Scenario shear_flow_by_radius() {
+  Scenario s = shear_flow();
+  s.name = "dense shear of disks as stiff as their radii make them";
+  const int n = s.model.contacts.num_materials;
+  const bool no_tension = s.model.contacts.no_tension;
+  ContactConstants p;
+  p.young_modulus = s.model.contacts.at(0, 0).kn / 0.05;
+  p.mu = 0.4;
+  p.restitution = 0.8;
+  p = LinearByRadius::mix(p, p).value();
+  LinearByRadius::solve(p, {no_tension});
+  s.model.contacts = {n, std::vector<ContactConstants>(static_cast<std::size_t>(n * n), p),
+                      no_tension, 9};
+  make_rolling(s);
+  return s;
+}
+
 /// @param adhesion  strong enough that some that meet stay together
 inline Scenario sticky_gas(Adhesion adhesion, bool rolls) {
   Scenario s = hertz_gas();
@@ -99,11 +117,14 @@ inline Scenario rolling_column() {
   return s;
 }
 
-/// Gives all of a scenario temperatures by their ids, and its walls one, a flux, or neither.
+/// Gives all of a scenario temperatures by their ids, and its walls one, a flux, or neither; what
+/// contacts lose warms them, too.
 inline Scenario with_heat(Scenario s, double conductivity) {
   s.name += ", with heat";
   s.num_steps /= 3;
   s.model.heat.is_on = true;
+  s.model.heat.dissipation = true;
+  s.model.output.energy = true;
   for (std::size_t a = 0; a < s.model.materials.size(); ++a) {
     s.model.materials[a].conductivity = conductivity * (1.0 + 0.5 * static_cast<double>(a));
     s.model.materials[a].heat_capacity = 10.0 + 3.0 * static_cast<double>(a);

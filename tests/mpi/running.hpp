@@ -98,8 +98,9 @@ inline Words words_of(Simulation& sim) {
   }
   if (!sim.model().output.energy) return words;
   const EnergyBudget b = sim.energy_budget(m);
-  for (const double value : {b.gravity_work, b.caller_work, b.contact_loss, b.bond_loss,
-                             b.damping_loss, b.departed, b.error})
+  for (const double value :
+       {b.gravity_work, b.caller_work, b.contact_loss, b.dashpot_loss, b.sliding_loss,
+        b.rolling_loss, b.bond_loss, b.damping_loss, b.departed, b.error})
     add(value);
   return words;
 }

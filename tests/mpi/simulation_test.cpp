@@ -67,6 +67,12 @@ Outcome outcome_of(const Scenario& s, MPI_Comm comm, const RunOptions& options, 
     for (const double value : {m.heat.value(), m.min_temperature, m.max_temperature})
       out.add(value);
   }
+  if (s.model.output.energy) {
+    const EnergyBudget b = sim.energy_budget(m);
+    for (const double value :
+         {b.contact_loss, b.dashpot_loss, b.sliding_loss, b.rolling_loss, b.error})
+      out.add(value);
+  }
   std::int64_t migrations = sim.timings().migrations;
   MPI_Allreduce(&migrations, &out.migrations, 1, MPI_INT64_T, MPI_SUM, comm);
   out.contacts = m.contacts;
@@ -304,6 +310,10 @@ TEST(SameBits, DisksThatResistToRolling) {
   EXPECT_GT(expect_same_bits(rolling_shear_flow(), 4).contacts, 50);
 }
 
+TEST(SameBits, DisksAsStiffAsTheirRadiiMakeThem) {
+  EXPECT_GT(expect_same_bits(shear_flow_by_radius(), 5).contacts, 50);
+}
+
 TEST(SameBits, SpheresThatResistToRollingAndTwisting) {
   EXPECT_GT(expect_same_bits(rolling_column(), 6).contacts, 30);
   (void)expect_same_bits(rolling_hertz_gas(), 9);
@@ -319,7 +329,7 @@ TEST(SameBits, SpheresThatHoldBeyondTouch) {
   (void)expect_same_bits(sticky_gas(Adhesion::Bridge, true), 10);
 }
 
-TEST(SameBits, HeatThatFlowsAcrossCutsAndMovesWithItsParticles) {
+TEST(SameBits, HeatThatFlowsAcrossCutsAndMovesWithItsParticlesAndWhatContactsLose) {
   (void)expect_same_bits(with_heat(plates_at_borders(), 400.0), 3);
   (void)expect_same_bits(with_heat(attracting_gas(true), 200.0), 7);
 }

@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <random>
 #include <span>
 #include <string>
 #include <vector>
@@ -76,6 +78,9 @@ TEST(EnergyBudget, ContactsTakeWhatARestitutionSays) {
     const Balance after = balance_of(run);
     EXPECT_EQ(after.measured.max_overlap, 0.0) << "it has rebounded";
     EXPECT_NEAR(after.budget.contact_loss, (1.0 - 0.36) * before.kinetic, 3e-3 * before.kinetic);
+    EXPECT_NEAR(after.budget.dashpot_loss, (1.0 - 0.36) * before.kinetic, 3e-3 * before.kinetic);
+    EXPECT_NEAR(after.budget.sliding_loss, 0.0, 1e-20);
+    EXPECT_EQ(after.budget.rolling_loss, 0.0);
     EXPECT_NEAR(after.budget.error, 0.0, 1e-12 * before.kinetic);
   }
 }
@@ -90,7 +95,114 @@ TEST(EnergyBudget, SlidingTakesTwoSeventhsUntilABallRolls) {
   const Balance after = balance_of(run);
   EXPECT_NEAR(particle(run, 1).velocity[0], 2.0 * 5.0 / 7.0, 2e-3);
   EXPECT_NEAR(after.budget.contact_loss / before.kinetic, 2.0 / 7.0, 1e-3);
+  EXPECT_NEAR(after.budget.sliding_loss / before.kinetic, 2.0 / 7.0, 1e-3);
   EXPECT_NEAR(after.budget.error, 0.0, 1e-11 * before.kinetic);
+}
+
+/// A ball on the floor, by linear and by Hertz contacts that resist rolling.
+Simulation on_the_floor(bool is_hertz, const std::string& more, const std::string& state) {
+  const std::string rules = "[contact]\nrolling = \"spring\"\n" + more;
+  const std::string hertz =
+      "model = \"hertz\"\n[[material]]\nname = \"m\"\ndensity = 1000.0\n"
+      "young_modulus = 1e7\npoisson_ratio = 0.25\n";
+  const std::string z = is_hertz ? "0.0999" : "0.09958";  // where it rests
+  return simulate("dimension = 3\ngravity = [0.0, 0.0, -10.0]\n" + time(2e-5) + kFloor + rules +
+                  (is_hertz ? hertz : kLinear) +
+                  "friction = 0.5\nrestitution = 0.2\nrolling_friction = 0.02\n"
+                  "[[particles]]\nkind = \"list\"\nmaterial = \"m\"\nparticle = [{ position = "
+                  "[0.0, 0.0, " +
+                  z + "], radius = 0.1, " + state + " }]\n");
+}
+
+TEST(EnergyBudget, ABallThatRollsLosesByRolling) {
+  for (const bool is_hertz : {false, true}) {
+    SCOPED_TRACE(is_hertz);
+    Simulation run =
+        on_the_floor(is_hertz, "", "velocity = [1.0, 0.0, 0.0], omega = [0.0, 10.0, 0.0]");
+    run.run(1000);  // it settles
+    const Balance before = balance_of(run);
+
+    run.run(25000);
+
+    const Balance after = balance_of(run);
+    const double lost = after.budget.contact_loss - before.budget.contact_loss;
+    EXPECT_NEAR(particle(run, 1).velocity[0] / (1.0 - 5.0 / 7.0 * 0.02 * 10.0 * 0.52), 1.0, 3e-3);
+    EXPECT_GT(lost, 0.1 * before.kinetic);
+    EXPECT_NEAR((after.budget.rolling_loss - before.budget.rolling_loss) / lost, 1.0, 3e-3);
+  }
+}
+
+TEST(EnergyBudget, ABallThatSpinsLosesByTwisting) {
+  for (const bool is_hertz : {false, true}) {
+    SCOPED_TRACE(is_hertz);
+    Simulation run =
+        on_the_floor(is_hertz, "twisting = \"marshall\"\n", "omega = [0.0, 0.0, 10.0]");
+    run.run(1000);
+    const Balance before = balance_of(run);
+
+    run.run(25000);
+
+    const Balance after = balance_of(run);
+    const double lost = after.budget.contact_loss - before.budget.contact_loss;
+    EXPECT_GT(lost, 0.1 * before.kinetic);
+    EXPECT_NEAR((after.budget.rolling_loss - before.budget.rolling_loss) / lost, 1.0, 3e-3);
+  }
+}
+
+/// Balls on a grid that fly anywhere.
+std::string gas(int dimension) {
+  std::mt19937 draw(7);
+  const auto number = [&] { return std::to_string(1e-6 * static_cast<double>(draw() % 1000000)); };
+  const auto vector = [&](const auto& component) {
+    std::string text = "[";
+    for (int c = 0; c < dimension; ++c) text += (c > 0 ? ", " : "") + component(c);
+    return text + "]";
+  };
+  std::string list;
+  for (int cell = 0; cell < (dimension == 2 ? 25 : 125); ++cell) {
+    const auto at = [&](int axis) {
+      return std::to_string(0.1 + 0.2 * (cell / static_cast<int>(std::pow(5.0, axis) + 0.5) % 5));
+    };
+    const auto speed = [&](int /*axis*/) { return "-" + number(); };
+    list += "{ position = " + vector(at) + ", radius = 0.0" + std::to_string(70 + cell % 20) +
+            ", velocity = " +
+            vector(cell % 2 == 0 ? std::function(speed) : [&](int /*axis*/) { return number(); }) +
+            " },\n";
+  }
+  return "[[particles]]\nkind = \"list\"\nmaterial = \"m\"\nparticle = [\n" + list + "]\n";
+}
+
+/// A gas that loses by dashpots, sliding and rolling at once: what its contacts tell adds up.
+void expect_parts_to_add_up(int dimension, const std::string& law) {
+  const std::string third = dimension == 2 ? "" : ", 0.0", high = dimension == 2 ? "" : ", 1.0";
+  const std::string axes = dimension == 2 ? "" : ", \"z\"";
+  SCOPED_TRACE(law);
+  Simulation run = simulate(
+      "dimension = " + std::to_string(dimension) + "\n" + time(1e-5) + "[domain]\nlo = [0.0, 0.0" +
+      third + "]\nhi = [1.0, 1.0" + high + "]\nperiodic = [\"x\", \"y\"" + axes +
+      "]\n[output]\nenergy = true\n" + law +
+      "friction = 0.4\nrolling_friction = 0.1\nrolling_damping = 0.5\nrestitution = 0.7\n" +
+      gas(dimension));
+  const Balance before = balance_of(run);
+
+  run.run(dimension == 2 ? 40000 : 20000);
+
+  const EnergyBudget b = balance_of(run).budget;
+  EXPECT_GT(b.contact_loss, 0.1 * before.kinetic);
+  EXPECT_GT(b.sliding_loss, 0.02 * b.contact_loss);
+  EXPECT_GT(b.rolling_loss, 0.002 * b.contact_loss);
+  EXPECT_NEAR((b.dashpot_loss + b.sliding_loss + b.rolling_loss) / b.contact_loss, 1.0, 3e-3);
+}
+
+TEST(EnergyBudget, PartsOfTheLossAddUp) {
+  const std::string rolls = "[contact]\nrolling = \"spring\"\n";
+  const std::string damped = "tangential_damping = 1.0\n";
+  expect_parts_to_add_up(2, rolls + kLinear + damped);
+  expect_parts_to_add_up(3, rolls + "twisting = \"marshall\"\n" + kLinear + damped);
+  for (const char* tangential : {"mindlin", "mindlin-displacement"})
+    expect_parts_to_add_up(3, rolls + "twisting = \"marshall\"\ntangential = \"" + tangential +
+                                  "\"\nmodel = \"hertz\"\n[[material]]\nname = \"m\"\ndensity = "
+                                  "1000.0\nyoung_modulus = 1e6\npoisson_ratio = 0.25\n");
 }
 
 TEST(EnergyBudget, GravityGivesWhatHeightLoses) {

@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -251,6 +254,84 @@ TEST(HeatOfFixedParticles, FlowsFromWallsToo) {
 
   EXPECT_GT(test::particle(simulation, 1).temperature, 399.0);
   EXPECT_EQ(test::particle(simulation, 5).temperature, 300.0) << "two fixed ones are no pair";
+}
+
+TEST_P(Heat, OfACollisionWarmsBothAlikeByWhatTheyLose) {
+  const int dim = GetParam();
+  const std::string still = dim == 2 ? ", 0.0]" : ", 0.0, 0.0]";
+  auto simulation = test::simulate(
+      head(dim, 1e-6, "normal_stiffness = 1e5\nrestitution = 0.6\n") +
+          source(at(dim, 0.1, ", velocity = [2.0" + still) +
+                 at(dim, 0.1 + 2.0 * kRadius + 1e-4, ", temperature = 310.0")),
+      {"heat.dissipation=true", "material.m.conductivity=1e-9", "limits.overlap_error=1.0"});
+  const Measures before = simulation.measure();
+
+  simulation.run(10000);
+
+  const Measures after = simulation.measure();
+  const double lost = before.kinetic.value() - after.kinetic.value();
+  EXPECT_NEAR(lost / before.kinetic.value(), 0.5 * (1.0 - 0.36), 1e-3);
+  EXPECT_NEAR((after.heat.value() - before.heat.value()) / lost, 1.0, 3e-3);
+  for (const double start : {300.0, 310.0}) {
+    const double now = test::particle(simulation, start == 300.0 ? 1 : 2).temperature;
+    EXPECT_NEAR((now - start) * capacity_of(dim) / (0.5 * lost), 1.0, 3e-3);
+  }
+}
+
+TEST_P(Heat, AndMechanicalEnergyOfAGasAreTheSameThroughout) {
+  auto simulation = test::simulate(
+      gas(GetParam()),
+      {"heat.dissipation=true", "material.m.restitution=0.7", "material.m.friction=0.4",
+       "material.m.tangential_stiffness=5e3", "material.m.tangential_damping=1.0"});
+  const Measures before = simulation.measure();
+  const auto mechanical = [](const Measures& m) { return m.kinetic.value() + m.elastic.value(); };
+
+  simulation.run(5000);
+
+  const Measures after = simulation.measure();
+  const double lost = mechanical(before) - mechanical(after);
+  EXPECT_GT(lost, 0.3 * mechanical(before));
+  EXPECT_NEAR((after.heat.value() - before.heat.value()) / lost, 1.0, 5e-3);
+}
+
+TEST(HeatOfSliding, AtAWallAllWarmsTheParticle) {
+  auto simulation = test::simulate(
+      head(3, 1e-5,
+           "normal_stiffness = 1e5\ntangential_stiffness = 5e4\nfriction = 0.3\n"
+           "restitution = 0.2\ntangential_damping = 20.0\n") +
+          "[[wall]]\nname = \"floor\"\nmaterial = \"m\"\npoint = [0.0, 0.0, 0.0]\nnormal = "
+          "[0.0, 0.0, 1.0]\n[[particles]]\nkind = \"list\"\nmaterial = \"m\"\nparticle = [{ "
+          "position = [0.1, 0.05, 0.0099992], radius = 0.01, velocity = [1.0, 0.0, 0.0] }]\n",
+      {"heat.dissipation=true", "gravity=[0.0, 0.0, -10.0]"});
+  const double start = simulation.measure().kinetic.value();
+
+  simulation.run(20000);
+
+  const Measures after = simulation.measure();
+  EXPECT_NEAR(after.kinetic.value() / start, 5.0 / 7.0, 1e-3) << "it rolls";
+  EXPECT_NEAR((test::particle(simulation, 1).temperature - 300.0) * capacity_of(3) / start,
+              2.0 / 7.0, 1e-3);
+}
+
+TEST_P(Heat, IsReadAndSetByCallers) {
+  const int dim = GetParam();
+  const double rate = 2.0 * between_particles(dim) / capacity_of(dim);
+  auto simulation = test::simulate(
+      head(dim, 1e-4 / rate, kSoft) +
+      source(at(dim, 0.05) + at(dim, 0.05 + 2.0 * kRadius - kDepth, ", temperature = 320.0")));
+  EXPECT_EQ(simulation.gather(ParticleField::Temperature).values,
+            (std::vector<double>{300.0, 320.0}));
+
+  const std::vector<std::int64_t> first{1};
+  simulation.scatter(ParticleField::Temperature, first, std::vector<double>{400.0});
+  simulation.run(10000);
+
+  EXPECT_NEAR(test::particle(simulation, 1).temperature, 360.0 + 40.0 * std::exp(-1.0), 2e-3);
+  const auto refused = [&](const std::vector<double>& values) {
+    EXPECT_THROW(simulation.scatter(ParticleField::Temperature, first, values), InputError);
+  };
+  refused({-1.0});
+  refused({1.0, 2.0, 3.0});
 }
 
 }  // namespace

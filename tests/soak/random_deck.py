@@ -61,10 +61,14 @@ class RandomDeck:
         rng = self.rng
         self.materials = ["a", "b", "c"][: rng.randint(1, 3)]
         self.density = rng.choice((100.0, 1000.0, 2500.0))
+        self.most_friction = 0.0
+        self.has_rolling_stiffness = rng.random() < 0.5  # else the tangential one, which may be zero
         self.stiffest, self.mass = 0.0, self.density * math.pi * (0.6 * RADIUS) ** 2
         if self.dimension == 3:
             self.mass *= 4 / 3 * 0.6 * RADIUS
         self.is_hertz = self.dimension == 3 and rng.random() < 0.4
+        self.is_by_radius = not self.is_hertz and rng.random() < 0.25
+        self.has_heat = rng.random() < 0.25
         self.rolls = rng.random() < 0.4
         self.is_jkr = self.is_hertz and rng.random() < 0.25
         sticks = self.is_hertz and not self.is_jkr
@@ -72,24 +76,35 @@ class RandomDeck:
         kind = rng.choice(("normal_damping", "normal_damping_rate", "restitution"))
         for name in self.materials:
             kn = 10 ** rng.uniform(4, 5.5)
+            friction = rng.choice((0.0, 0.3, 1.0))
+            self.most_friction = max(self.most_friction, friction)
             self.stiffest = max(self.stiffest, kn)
-            constants = self.hertz(kn) if self.is_hertz else self.linear(kn, kind)
-            self.table("[[material]]", name=f'"{name}"', density=self.density, friction=rng.choice((0.0, 0.3, 1.0)),
+            constants = (self.hertz(kn) if self.is_hertz else
+                         self.by_radius(kn) if self.is_by_radius else self.linear(kn, kind))
+            if self.has_heat:
+                constants |= {"conductivity": rng.uniform(0.1, 1.0), "heat_capacity": 1000.0}
+            self.table("[[material]]", name=f'"{name}"', density=self.density, friction=friction,
                        rolling_friction=rng.choice((0.01, 0.2)) if self.rolls else None,
-                       rolling_damping=rng.choice((None, 0.5)) if self.rolls else None, **constants)
+                       rolling_damping=(None if self.has_rolling_stiffness else 0.5) if self.rolls else None,
+                       rolling_stiffness=0.3 * kn if self.rolls and self.has_rolling_stiffness else None, **constants)
         if len(self.materials) > 1 and rng.random() < 0.4:
-            constants = {"restitution": 0.4} if self.is_hertz else {
+            constants = {"restitution": 0.4} if self.is_hertz or self.is_by_radius else {
                 "normal_stiffness": self.stiffest, "normal_damping": 0.1 * math.sqrt(self.stiffest * self.mass)}
             self.table("[[pair]]", materials='["a", "b"]', friction=0.2, **constants)
         if self.adhesion == "bridge":
             self.table("[[bridge]]", materials=f'["a", "{rng.choice(self.materials)}"]', contact_angle=rng.choice((None, 40.0)),
                        surface_tension=1e-5 * self.stiffest, volume=(rng.uniform(0.05, 0.3) * RADIUS) ** 3)
+        twists = self.dimension == 3 and self.rolls and self.most_friction > 0.0 and rng.random() < 0.5
         self.table("[contact]", no_tension=rng.choice(("true", "false")),
                    model=('"jkr"' if self.is_jkr else '"hertz"') if self.is_hertz else None,
                    pull_off=rng.choice((None, '"peak"')) if self.is_jkr else None,
                    tangential=rng.choice((None, '"mindlin-displacement"')) if self.is_hertz else None,
                    rolling='"spring"' if self.rolls else None,
+                   twisting='"marshall"' if twists else None,
+                   stiffness='"radius"' if self.is_by_radius else None,
                    adhesion=f'"{self.adhesion}"' if self.adhesion else None)
+        if self.has_heat:
+            self.table("[heat]", dissipation=rng.choice(("true", "false")))
 
     def linear(self, kn, kind):
         rng = self.rng
@@ -99,6 +114,11 @@ class RandomDeck:
                    "restitution": rng.uniform(0.3, 1.0)}[kind]
         return {"normal_stiffness": kn, "tangential_stiffness": rng.choice((0.0, rng.uniform(0.1, 1.0) * kn)),
                 "tangential_damping": rng.choice((None, 0.1 * critical)), kind: damping}
+
+    def by_radius(self, kn):
+        rng = self.rng
+        return {"young_modulus": kn / RADIUS, "restitution": rng.uniform(0.3, 1.0),
+                "tangential_stiffness_ratio": rng.choice((None, 0.8)), "tangential_damping_ratio": rng.choice((None, 0.2))}
 
     def hertz(self, kn):
         """As stiff as kn where spheres overlap by a twentieth of a radius."""
@@ -218,7 +238,7 @@ class RandomDeck:
             self.table("[limits]", overlap_warning=rng.choice((0.0, 0.02, 0.1)),
                        overlap_error=rng.choice((0.0, 0.15, 0.5)))
         self.table("[output]", series_every=rng.randint(10, 60), snapshots_every=rng.choice((0, 100)),
-                   picture="false")
+                   energy=rng.choice(("true", "false")), picture="false")
 
     def text(self):
         return "\n".join(self.lines) + "\n"

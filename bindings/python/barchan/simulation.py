@@ -164,8 +164,8 @@ class Simulation(Events):
         """A field of all particles: (ids, values) in order of ids on rank 0, None elsewhere. Collective.
 
         Args:
-            field: position, velocity, angular_velocity, force, torque (n, 3); radius, mass, type (n); or one of your
-                own (n, components).
+            field: position, velocity, angular_velocity, force, torque (n, 3); radius, mass, type, temperature (n); or one
+                of your own (n, components).
 
         Raises:
             ValueError: there is no such field.
@@ -175,12 +175,12 @@ class Simulation(Events):
         return self._inside.gather(field_of(field))
 
     def scatter(self, field: str, ids: Any, values: Any) -> None:
-        """Sets velocity, angular_velocity, force, torque or a field of your own of any particles. Collective; the same
-        lists on every rank.
+        """Sets velocity, angular_velocity, force, torque, temperature or a field of your own of any particles.
+        Collective; the same lists on every rank.
 
         Args:
             values: (n, 3), in 2D also (n, 2) [m/s, N]; angular_velocity and torque in 2D also (n) about z [rad/s, N·m];
-                of your own (n, components).
+                temperature (n) [K]; of your own (n, components).
 
         Raises:
             InputError: an id that there is not, other shapes, a number that is not finite; nothing has changed.
@@ -189,6 +189,8 @@ class Simulation(Events):
         if field in self.fields:
             return self._inside.scatter_field(field, ids, np.asarray(values, dtype=float))
         what = field_of(field)
+        if field == "temperature":
+            return self._inside.scatter(what, ids, np.ascontiguousarray(values, dtype=float).ravel())
         rows = turns if field in ("angular_velocity", "torque") else vectors
         self._inside.scatter(what, ids, rows(values, len(ids), "values"))
 

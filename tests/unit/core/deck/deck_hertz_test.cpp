@@ -238,7 +238,7 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"PairOfAMaterialWithoutModuli",
               "rigid = true\nrestitution = 0.5\nfriction = 0.2\n",
               "[[pair]]\nmaterials = [\"glass\", \"steel\"]\nrestitution = 0.7\n",
-              {"'steel' has no constants of its own", "young_modulus and poisson_ratio"}},
+              {"'steel' has no constants of its own", "young_modulus in Pa and poisson_ratio"}},
         Wrong{"WallWithoutModuli",
               "rigid = true\nrestitution = 0.5\nfriction = 0.2\n",
               "",
@@ -271,7 +271,7 @@ INSTANTIATE_TEST_SUITE_P(
               "friction = 0.4",
               "friction = 0.4\nsurface_energy = 0.05",
               {":17:18:", "'surface_energy' has no place without contact.adhesion = \"dmt\"",
-               "write adhesion = \"dmt\" in [contact]"}},
+               "write adhesion = \"dmt\" or model = \"jkr\" in [contact]"}},
         Wrong{
             "CohesionUnderDmt",
             "model = \"hertz\"",
@@ -325,6 +325,14 @@ INSTANTIATE_TEST_SUITE_P(
               "model = \"hertz\"",
               "model = \"linear\"\nadhesion = \"sjkr\"",
               {":10:12:", "linear contacts do not stick", "model = \"hertz\""}},
+        Wrong{"RollingByNoStiffness",
+              "model = \"hertz\"\n[[material]]\nname = \"glass\"\ndensity = 2500.0\n"
+              "young_modulus = 1e7\npoisson_ratio = 0.25\nrestitution = 0.9\nfriction = 0.4",
+              "model = \"hertz\"\nrolling = \"spring\"\n[[material]]\nname = \"glass\"\n"
+              "density = 2500.0\nyoung_modulus = 1e7\npoisson_ratio = 0.25\nrestitution = 0.9\n"
+              "rolling_friction = 0.1",
+              {"contacts of 'glass' and 'glass' have rolling_friction", "friction is zero",
+               "or rolling_stiffness"}},
         Wrong{"UnmixedPair",
               "model = \"hertz\"",
               "model = \"hertz\"\nmixing = \"none\"",
