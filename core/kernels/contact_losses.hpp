@@ -25,7 +25,7 @@
 namespace barchan::detail {
 
 /// The scalar law (contact_law.hpp).
-template <class Law, int Dim, int Level>
+template <class Law, int Dim, int Level = 0>
 PairForce<simd::Scalar, Dim> respond_at(int level, const double* row,
                                         const TurningPair<simd::Scalar, Dim>& pair, double dt,
                                         double* history);
