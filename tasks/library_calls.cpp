@@ -48,6 +48,7 @@ ParticleView Simulation::EngineOf<Dim>::view_of(int brick) {
 template <int Dim>
 std::vector<ParticleView> Simulation::EngineOf<Dim>::owned() {
   std::vector<ParticleView> views;
+  views.reserve(static_cast<std::size_t>(num_bricks()));
   for (int b = 0; b < num_bricks(); ++b) views.push_back(view_of(b));
   return views;
 }
@@ -67,6 +68,7 @@ LoadView Simulation::EngineOf<Dim>::loads_of(int brick) {
 template <int Dim>
 std::vector<LoadView> Simulation::EngineOf<Dim>::loads() {
   std::vector<LoadView> views;
+  views.reserve(static_cast<std::size_t>(num_bricks()));
   for (int b = 0; b < num_bricks(); ++b) views.push_back(loads_of(b));
   return views;
 }

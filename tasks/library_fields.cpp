@@ -20,14 +20,18 @@ struct Row {
   double values[3] = {};
 };
 
+/// Force and torque / radius by the caller; null: none has one.
+template <int Dim>
+const double* load_on(const ParticleStore<Dim>& store, std::int32_t i) {
+  if (store.external.empty()) return nullptr;
+  return store.external.data() + std::size_t{Layout<Dim>::kForce} * static_cast<std::size_t>(i);
+}
+
 template <int Dim>
 Row row_of(const ParticleStore<Dim>& store, std::int32_t i, ParticleField field) {
   using F = ParticleField;
   Row row{store.id[static_cast<std::size_t>(i)], {}};
-  const double* load =
-      store.external.empty()
-          ? nullptr
-          : store.external.data() + std::size_t{Layout<Dim>::kForce} * static_cast<std::size_t>(i);
+  const double* load = load_on(store, i);
   const auto turn = [&](const double* from, double factor) {
     for (int c = 0; c < kSpins<Dim>; ++c) row.values[place_of_turn<Dim>(c)] = from[c] * factor;
   };

@@ -127,15 +127,19 @@ Json contract_of(const RunSummary& s) {
           {"state_digest", fmt::format("{:016x}", s.digest)}};
 }
 
-void add_further(const RunSummary& s, Json& json) {
-  json["interrupted"] = s.interrupted;
+Json cuts_of(const RunSummary& s) {
   const auto along_axes = [&](const std::array<int, 3>& counts) {
     return Json(std::vector<int>(counts.begin(), counts.begin() + s.dimension));
   };
-  json["cuts"] = {{"form", s.cuts.are_strips ? "strips" : "bricks"},
-                  {"ranks", along_axes(s.cuts.ranks)},
-                  {"lanes", along_axes(s.cuts.lanes)},
-                  {"imbalance", s.imbalance()}};
+  return {{"form", s.cuts.are_strips ? "strips" : "bricks"},
+          {"ranks", along_axes(s.cuts.ranks)},
+          {"lanes", along_axes(s.cuts.lanes)},
+          {"imbalance", s.imbalance()}};
+}
+
+void add_further(const RunSummary& s, Json& json) {
+  json["interrupted"] = s.interrupted;
+  json["cuts"] = cuts_of(s);
   json["loop_steps"] = s.loop_steps;
   json["exchange_choice"] = choice_of(s.choice);
   json["phases_most"] = s.phases_most;

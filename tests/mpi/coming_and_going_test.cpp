@@ -89,6 +89,11 @@ TEST(Coupling, TheStableStepOfNewcomersIsTheSameOnAnyRanks) {
   p.id = 100000;
   p.position = last->position + Vec3(-2.0, 0.02, 0.0);
   p.radius = 1e-3;
+  const auto touches = [&p](const ParticleData& q) {
+    return (q.position - p.position).norm() < q.radius + p.radius;
+  };
+  while (std::any_of(s.set.particles.begin(), s.set.particles.end(), touches))
+    p.position[0] += p.radius;
   Simulation alone(s.model, s.set, MPI_COMM_SELF, with_threads(1));
   Simulation sim(s.model, s.set, MPI_COMM_WORLD, with_threads(2));
   const auto words = [&](Simulation& of) {
