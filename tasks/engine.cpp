@@ -63,6 +63,7 @@ Simulation::EngineOf<Dim>::EngineOf(const Model& model, const OpenCheckpoint& ch
     since_ = s.since;
     parts_.world.last_dt = s.last_dt;
   }
+  watch_.see_overlap(s.seen_overlap);
   schedule_.restore(step_, lists_.top_speed(), s.look,
                     communicator_.is_root() ? population_.size : 0);
 }
@@ -308,6 +309,7 @@ CheckpointState Simulation::EngineOf<Dim>::state() {
   s.num_particles = population_.size;
   s.left = population_.left;
   s.look = schedule_.pending_look(step_);
+  s.seen_overlap = watch_.memory().overlap;
   s.fields = fields_.saved();
   if (since_.step > 0) {
     s.since = since_;

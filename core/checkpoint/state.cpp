@@ -41,6 +41,7 @@ CheckpointState take_state(ByteReader& in) {
   s.has_bonds = in.take<std::uint8_t>() != 0;
   s.num_particles = in.take<std::int64_t>();
   s.look = in.take<PendingLook>();
+  s.seen_overlap = in.take<double>();
   s.left = in.take<LeftDomain>();
   s.walls = in.take_counted<SavedWall>();
   s.fingerprint = in.take_counted<std::uint64_t>();
@@ -132,6 +133,7 @@ std::vector<std::byte> encode(const CheckpointState& s) {
   out.put(static_cast<std::uint8_t>(s.has_bonds));
   out.put(s.num_particles);
   out.put(s.look);
+  out.put(s.seen_overlap);
   out.put(s.left);
   out.put_counted(s.walls);
   out.put_counted(s.fingerprint);
@@ -161,7 +163,7 @@ CheckpointState decode_state(std::span<const std::byte> bytes, const std::string
       state.stage_begin <= state.step && state.skin >= 0.0 && std::isfinite(state.skin) &&
       positive(state.reach) && state.start_particles >= 0 && positive(state.grain) &&
       positive(state.heat_grain) && state.overlap_limit > 0.0 && state.look.step >= -1 &&
-      state.look.step <= state.step &&
+      state.seen_overlap >= 0.0 && state.look.step <= state.step &&
       (state.look.step < 0 || state.step - state.look.step < kEventSteps) &&
       is_before(state.since) && is_before(state.stage_since) && state.last_dt >= 0.0 &&
       std::isfinite(state.last_dt) && CallerFields().restore(state.fields);

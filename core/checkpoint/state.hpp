@@ -51,6 +51,7 @@ struct CheckpointState {
   std::int64_t num_particles = 0;  ///< now
 
   PendingLook look;
+  double seen_overlap = 0.0;  ///< measured since the last look, for the next: share as there
   LeftDomain left;
   /// Where steps have not been of one length; last_dt = 0: they have.
   TimePoint since, stage_since;

@@ -161,5 +161,34 @@ TEST(Checkpoints, RefuseAnotherDeckAndSaysWhatDiffers) {
   }
 }
 
+/// The next look tells of an overlap that was measured: also when the run was ended before it.
+TEST(Checkpoints, RememberAnOverlapThatNoLookHasJudgedYet) {
+  Scenario s = two_particles(false);
+  s.model.search.skin.reset();
+  s.model.contacts.constants[0].kn = 50.0;  // too soft for their speed
+  s.model.limits = {0.05, 0.5};
+  const SharedFolder folder;
+  std::int64_t end = 0;
+  {
+    Simulation sim(s.model, s.set, MPI_COMM_WORLD, with_threads(1));
+    while (end < 1000 && sim.measure().max_overlap_share <= 0.5) end += sim.run(1);
+  }
+  {
+    Simulation sim(s.model, s.set, MPI_COMM_WORLD, with_threads(1));
+    sim.keep_checkpoints(folder.path(), {.every_steps = 1000, .every_seconds = 0.0, .keep = 1});
+    (void)sim.run(end);
+    (void)sim.measure();
+    sim.save_checkpoint();
+    ASSERT_TRUE(sim.finish_checkpoints());
+  }
+  Simulation sim = Simulation::restore(s.model, folder.at(end), MPI_COMM_WORLD, with_threads(1));
+  try {
+    (void)sim.run(40);
+    FAIL() << "an overlap measured at step " << end << " is forgotten";
+  } catch (const AgreedError& e) {
+    EXPECT_NE(std::string(e.what()).find("limits.overlap_error"), std::string::npos) << e.what();
+  }
+}
+
 }  // namespace
 }  // namespace barchan::test
