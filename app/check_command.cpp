@@ -128,6 +128,20 @@ std::vector<std::string> row_of_ranks(const CutPlan& plan, const CutShape& shape
           readable_bytes(bytes_each * static_cast<double>(*hi) + bytes_of_all)};
 }
 
+void print_depth(const Model& model, const CutRoom& room, int wanted) {
+  if (model.exchange.depth == 0) return;
+  std::string fits;
+  for (const int p : wanted > 1 ? std::vector<int>{wanted} : std::vector<int>{2, 4, 8}) {
+    fits += fmt::format("{}{}{} with {}{}", fits.empty() ? "at most " : ", ", most_depth(p, room),
+                        fits.empty() ? " fit" : "", p, fits.empty() ? " ranks" : "");
+  }
+  std::printf("  Shadows: a depth of %d; %s\n", model.exchange.depth, fits.c_str());
+  if (std::ranges::any_of(model.walls, &WallSpec::is_loaded))
+    std::printf(
+        "  While a loaded plate is active, each step waits for the forces on it, at any "
+        "depth.\n");
+}
+
 void print_cuts(const LoadedDeck& loaded, int wanted) {
   const Model& model = loaded.deck.model;
   const CutPlan plan = plan_cuts(model, loaded.particles);
@@ -138,6 +152,8 @@ void print_cuts(const LoadedDeck& loaded, int wanted) {
                           loaded.particles.bonds.capacity() * sizeof(BondData));
   // A deck that asks for bricks is for one number of ranks.
   CutRequest request{model.domain.cuts, wanted, 1, false, model.domain.place};
+  request.depth = model.exchange.depth;
+  request.depth_place = model.exchange.place;
   const auto most_bricks = static_cast<std::int64_t>(plan.room.num_cells());
   std::vector<int> ranks{1, 2, 4, 8, 16, 32};
   if (wanted > 0) {
@@ -147,7 +163,9 @@ void print_cuts(const LoadedDeck& loaded, int wanted) {
   }
   Rows rows{{"ranks", "cut into", "particles a rank", "largest / mean", "memory a rank"}};
   for (const int p : ranks) {
-    if (wanted == 0 && !fits_somehow(p, request.wish.kind, plan.room)) continue;
+    if (wanted == 0 && (!fits_somehow(p, request.wish.kind, plan.room) ||
+                        (p > 1 && most_depth(p, plan.room) < request.depth)))
+      continue;
     request.ranks = p;
     rows.push_back(row_of_ranks(plan, choose_cuts(request, plan.room), bytes, all));
   }
@@ -158,6 +176,7 @@ void print_cuts(const LoadedDeck& loaded, int wanted) {
       "Cuts: %s cells, %.3g m long along %c; at most %d ranks fit as strips, %s as bricks\n%s",
       grid.c_str(), plan.cell[0], "xyz"[plan.room.axes[0]], plan.room.most_strips(),
       grouped(most_bricks).c_str(), table(rows).c_str());
+  print_depth(model, plan.room, wanted);
   std::printf(
       "  Memory: %.0f bytes a particle at the start, up to twice that when packed, and %s a rank "
       "for "

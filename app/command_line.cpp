@@ -116,6 +116,13 @@ void add_run(CLI::App& root, RunArguments& run, Words& words) {
       ->type_name("CUTS")
       ->check(not_empty());
   command
+      .add_option("--depth", run.options.depth,
+                  "Slabs beyond each cut that a rank steps, too, so that halos may come as many "
+                  "steps late; instead of the deck's exchange.depth; no bit depends on it")
+      ->type_name("N")
+      ->transform(whole_number())
+      ->check(CLI::Range(0, kMostDepth));
+  command
       .add_option("--record", run.record,
                   "With --exchange replay: the exchange of the recorded run; default: auto")
       ->type_name("NAME")

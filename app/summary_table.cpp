@@ -60,6 +60,11 @@ void add_communication(const RunSummary& s, Rows& rows) {
       {"communication",
        fmt::format("{} in flight, {} exposed: {} hidden", readable_seconds(s.in_flight_seconds),
                    readable_seconds(s.exposed_seconds), percent(s.hidden_fraction()))});
+  if (s.cuts.depth > 0) {
+    rows.push_back(
+        {"", fmt::format("shadows {} slab{} deep: {} of redundant work", s.cuts.depth,
+                         s.cuts.depth == 1 ? "" : "s", readable_seconds(s.phases.at("shadows")))});
+  }
   rows.push_back({"", fmt::format("{} messages, {}", grouped(static_cast<std::int64_t>(s.messages)),
                                   readable_bytes(static_cast<double>(s.bytes)))});
 }

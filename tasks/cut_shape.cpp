@@ -40,7 +40,7 @@ std::vector<Shape> products(int number, int dimension) {
 }
 
 bool fits(const CutShape& shape, const CutRoom& room) {
-  if (shape.form == CutForm::Strips) return shape.along(0) <= room.most_strips();
+  if (shape.form == CutForm::Strips) return shape.along(0) <= room.most_strips(min_cells(shape));
   for (int k = 0; k < 3; ++k) {
     if (shape.along(k) > room.cells[static_cast<std::size_t>(k)]) return false;
   }
@@ -61,10 +61,12 @@ struct Choice {
 /// As many lanes as threads, where they fit, else fewer.
 Choice best_strips(const CutRequest& request, const CutRoom& room) {
   Choice best;
-  const int fit = room.most_strips() / request.ranks;
+  CutShape shape{CutForm::Strips, {request.ranks, 1, 1}, {1, 1, 1}, 0};
+  if (request.ranks > 1) shape.depth = request.depth;
+  const int fit = room.most_strips(min_cells(shape)) / request.ranks;
   if (fit < 1) return best;
-  best.take({CutForm::Strips, {request.ranks, 1, 1}, {std::clamp(request.threads, 1, fit), 1, 1}},
-            room);
+  shape.lanes[0] = std::clamp(request.threads, 1, fit);
+  best.take(shape, room);
   return best;
 }
 
@@ -153,10 +155,34 @@ CutShape as_asked(const CutRequest& request, const CutRoom& room) {
   return best_bricks(request, room, std::span(&ranks, 1)).shape;
 }
 
+/// Shadows lie beyond cuts along one axis.
+CutShape with_shadows(const CutRequest& request, const CutRoom& room) {
+  CutRequest flat = request;
+  flat.depth = 0;
+  const CutShape shape =
+      request.wish.kind == CutWish::Kind::Bricks ? as_asked(flat, room) : CutShape{};
+  if (shape.form == CutForm::Bricks)
+    throw InputError(request.depth_place,
+                     fmt::format("a depth of {} works on strips, not with cuts = {}", request.depth,
+                                 in_words(request.wish.bricks, room.dimension)),
+                     "use cuts = \"strips\", or a depth of 0");
+  const Choice strips = best_strips(request, room);
+  if (strips.step < kDoesNotFit) return strips.shape;
+  const int most = most_depth(request.ranks, room);
+  throw InputError(
+      request.depth_place,
+      fmt::format("a depth of {} needs strips of {} cells: {} ranks do not fit into {} cells "
+                  "along {}",
+                  request.depth, request.depth + kMinSlabs, request.ranks, room.cells[0],
+                  "xyz"[room.axes[0]]),
+      most > 0 ? fmt::format("use a depth of at most {}, or fewer ranks", most)
+               : "use fewer ranks, or a depth of 0");
+}
+
 }  // namespace
 
-int CutRoom::most_strips() const {
-  return max_strips(cells[0], kMinSlabs);
+int CutRoom::most_strips(int min_cells) const {
+  return max_strips(cells[0], min_cells);
 }
 
 double CutRoom::num_cells() const {
@@ -197,12 +223,23 @@ double predicted_step(const CutShape& shape, const CutRoom& room) {
          kHandOver * (beside - 1.0 - remote);
 }
 
+int most_depth(int ranks, const CutRoom& room) {
+  int depth = 0;
+  const auto fits_with = [&](int d) {
+    const CutShape shape{CutForm::Strips, {ranks, 1, 1}, {1, 1, 1}, d};
+    return ranks <= room.most_strips(min_cells(shape));
+  };
+  while (fits_with(depth + 1)) ++depth;
+  return depth;
+}
+
 bool fits_somehow(int ranks, CutWish::Kind kind, const CutRoom& room) {
   if (ranks <= room.most_strips()) return true;
   return kind != CutWish::Kind::Strips && as_bricks(ranks, room).step < kDoesNotFit;
 }
 
 CutShape choose_cuts(const CutRequest& request, const CutRoom& room) {
+  if (request.depth > 0 && request.ranks > 1) return with_shadows(request, room);
   if (request.wish.kind == CutWish::Kind::Bricks) return as_asked(request, room);
   const Choice strips = best_strips(request, room);
   if (request.wish.kind == CutWish::Kind::Strips || request.needs_strips) {

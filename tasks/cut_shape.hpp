@@ -22,7 +22,7 @@ struct CutRoom {
   int dimension = 3;
   std::int64_t num_particles = 0;
 
-  [[nodiscard]] int most_strips() const;
+  [[nodiscard]] int most_strips(int min_cells = kMinSlabs) const;
   [[nodiscard]] double num_cells() const;
   [[nodiscard]] int num_filled(std::size_t axis) const {
     return filled[axis] > 0 ? filled[axis] : cells[axis];
@@ -36,11 +36,16 @@ struct CutRequest {
   CutWish wish;
   int ranks = 1, threads = 1;  ///< threads of a rank: as many lanes, where they fit
   bool needs_strips = false;   ///< the exchange `return`
-  SourcePlace place;           ///< of the domain, in the deck
+  SourcePlace place{};         ///< of the domain, in the deck
+  int depth = 0;               ///< of shadows, between ranks
+  SourcePlace depth_place{};   ///< in the deck
 };
 
 /// Whether so many ranks fit as bricks of any shape, or as strips. Pure.
 [[nodiscard]] bool fits_somehow(int ranks, CutWish::Kind kind, const CutRoom& room);
+
+/// The deepest shadows with which so many ranks fit as strips. Pure.
+[[nodiscard]] int most_depth(int ranks, const CutRoom& room);
 
 /// How ranks and their lanes are cut: as asked for, or in the way with the smallest predicted step;
 /// bricks only where they are clearly better than strips. Pure.
@@ -50,9 +55,10 @@ struct CutRequest {
 /// A step of the largest lane, in steps of a particle. @pre it fits
 [[nodiscard]] double predicted_step(const CutShape& shape, const CutRoom& room);
 
-/// Cells that a lane is wide at least.
-[[nodiscard]] inline int min_cells(CutForm form) {
-  return form == CutForm::Strips ? kMinSlabs : 1;
+/// Cells that a lane is wide at least. Behind shadows and the halo of the last one a band remains.
+[[nodiscard]] inline int min_cells(const CutShape& shape) {
+  if (shape.form == CutForm::Bricks) return 1;
+  return shape.depth > 0 ? shape.depth + kMinSlabs : kMinSlabs;
 }
 
 /// "strips", "4 x 1 x 2"; along x, y and z.

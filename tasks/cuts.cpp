@@ -8,7 +8,7 @@ Cuts equal_cuts(const CellLoads& loads, const CutShape& shape) {
   Cuts cuts;
   for (int axis = 0; axis < 3; ++axis)
     cuts[static_cast<std::size_t>(axis)] =
-        cut_equal(loads.along(axis), shape.along(axis), min_cells(shape.form));
+        cut_equal(loads.along(axis), shape.along(axis), min_cells(shape));
   return cuts;
 }
 
@@ -16,7 +16,7 @@ void move_cuts(Cuts& cuts, const CellLoads& loads, const CutShape& shape) {
   for (int axis = 0; axis < 3; ++axis) {
     if (shape.along(axis) == 1) continue;
     auto& along = cuts[static_cast<std::size_t>(axis)];
-    along = recut(along, loads.along(axis), shape.along(axis), min_cells(shape.form));
+    along = recut(along, loads.along(axis), shape.along(axis), min_cells(shape));
   }
 }
 

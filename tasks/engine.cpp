@@ -24,7 +24,7 @@ Simulation::EngineOf<Dim>::EngineOf(const Model& model, Communicator communicato
       parts_(model_, communicator_, options_, scale),
       graph_(parts_.strip, options_),
       schedule_(communicator_, parts_.world.skin, parts_.world.dt, model_.gravity.norm(),
-                kEventSteps),
+                kEventSteps, lag_of(parts_)),
       lists_(parts_, graph_, schedule_, options_),
       watch_(parts_, graph_, population_, notes_),
       plates_(communicator_, parts_.world.wall_specs, parts_.world.dt) {}
@@ -86,7 +86,7 @@ Simulation::EngineOf<Dim>::~EngineOf() {
   if (is_in_step_ || std::uncaught_exceptions() > 0) return;
   if (!is_mpi_initialized()) return;  // nothing of MPI is left to be taken down
   try {
-    parts_.strip.complete_halo();
+    (void)parts_.strip.discard_halo();
   } catch (const std::exception&) {  // the others are gone
   }
 }
@@ -96,10 +96,14 @@ std::int64_t Simulation::EngineOf<Dim>::run(std::int64_t num_steps) {
   begin_account();
   const std::int64_t begin = now_ns();
   std::int64_t done = 0;
+  if (num_steps > 0) tell_shadows_forces();
   stopped_ = stopped_ && num_steps == 0;
   try {
     while (done < num_steps && !stopped_ && !last_stage_ends()) {
-      if (events_.is_visit_due(step_)) visit_step();
+      if (events_.is_visit_due(step_)) {
+        visit_step();
+        tell_shadows_forces();
+      }
       done += go_on(events_.steps_before_next(step_, num_steps - done));
       if (events_.progress.is_due(step_)) tell_progress();
       if (events_.is_news_due(step_)) tell_news();
@@ -219,6 +223,7 @@ void Simulation::EngineOf<Dim>::update_lists() {
 
 template <int Dim>
 void Simulation::EngineOf<Dim>::renew_lists() {
+  if (!is_in_step_) parts_.strip.forget_shadows();  // a caller changed the state
   lists_.renew(step_);
   generation_.advance();
   growth_.look(parts_, step_, notes_);

@@ -196,6 +196,9 @@ class Simulation::EngineOf final : public Simulation::Engine {
   EngineOf(const Model& model, Communicator communicator, const RunOptions& options,
            const WorldScale& scale);
   void begin_loop();
+  /// Steps that a decision of all ranks may take (engine_shadows.cpp).
+  [[nodiscard]] static int lag_of(const RunParts<Dim>& run);
+  void tell_shadows_forces();
   std::int64_t go_on(std::int64_t most);
   void prepare_step();
   [[nodiscard]] bool last_stage_ends();
@@ -231,6 +234,7 @@ class Simulation::EngineOf final : public Simulation::Engine {
   GrowthWatch growth_;
   Plates plates_;
   LoopSeconds loop_;
+  bool had_forces_ = false;  ///< of callers, in the last run
 };
 
 }  // namespace barchan

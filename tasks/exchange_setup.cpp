@@ -24,8 +24,9 @@ bool is_recording(const RunOptions& options) {
   return options.tape != nullptr && !options.tape->is_playing();
 }
 
-ExchangeOptions options_of(const RunOptions& options) {
+ExchangeOptions options_of(const RunOptions& options, int depth) {
   ExchangeOptions exchange;
+  exchange.depth = depth;
   exchange.hooks = options.hooks;
   return exchange;
 }
@@ -69,7 +70,7 @@ CutScheme cut_scheme(const RunOptions& options) {
 
 std::unique_ptr<Exchange> first_exchange(const RunOptions& options,
                                          const Communicator& communicator,
-                                         const Neighbours& neighbours) {
+                                         const Neighbours& neighbours, int depth) {
   check_exchange(options.exchange, communicator);
   const bool has_played_tape = options.tape != nullptr && options.tape->is_playing();
   if (has_played_tape != (options.exchange == kReplay)) {
@@ -84,7 +85,7 @@ std::unique_ptr<Exchange> first_exchange(const RunOptions& options,
   std::string name = options.exchange;
   if (name == kReturn) name = "sendrecv";
   if (name == kAuto) name = kBeforeAuto;
-  return recorded(make_exchange(name, communicator, neighbours, options_of(options)),
+  return recorded(make_exchange(name, communicator, neighbours, options_of(options, depth)),
                   neighbours.num_links(), options);
 }
 
@@ -99,7 +100,8 @@ ExchangeChoice settle_exchange(Strip<Dim>& strip, const RunOptions& options,
     choice.reason = "one rank has no neighbours";
   }
   if (communicator.size() == 1 || options.exchange != kAuto) return choice;
-  SelectedExchange selected = select_exchange(communicator, strip.neighbours(), options_of(options),
+  SelectedExchange selected = select_exchange(communicator, strip.neighbours(),
+                                              options_of(options, strip.map().shape().depth),
                                               strip.most_halo_bytes(), work_of(strip));
   strip.set_exchange(recorded(std::move(selected.exchange), strip.num_links(), options));
   return selected.choice;

@@ -23,7 +23,7 @@ void check_exchange(const std::string& name, const Communicator& communicator);
 /// list), one that does not work here (with the remedy), or `replay` without a recorded tape.
 [[nodiscard]] std::unique_ptr<Exchange> first_exchange(const RunOptions& options,
                                                        const Communicator& communicator,
-                                                       const Neighbours& neighbours);
+                                                       const Neighbours& neighbours, int depth);
 
 /// For `auto`: measures and changes to the best. @return what the run uses and why. Collective.
 /// @pre the strip's lists are built, nothing is in flight

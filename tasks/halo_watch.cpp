@@ -41,7 +41,10 @@ template <int Dim>
 void HaloWatch<Dim>::poll_links() {
   found_.clear();
   for (int link = 0; link < strip_.num_links(); ++link) {
-    if (!is_in(link) && may_poll(link) && strip_.poll(link)) notice(link);
+    if (is_in(link))
+      strip_.advance_shadows(link);
+    else if (may_poll(link) && strip_.poll(link))
+      notice(link);
   }
 }
 
@@ -92,15 +95,17 @@ void HaloWatch<Dim>::after_chunk(int lane, bool is_last_of_lane, std::int64_t no
 template <int Dim>
 void HaloWatch<Dim>::try_poll(std::int64_t begin) {
   const bool all_is_in = all_are_in();
-  if (all_is_in && (driver_ || !strip_.exchange()->needs_progress())) return;
+  if (all_is_in && !strip_.has_shadows() && (driver_ || !strip_.exchange()->needs_progress()))
+    return;
   const std::unique_lock<std::mutex> lock(guard_, std::try_to_lock);
   if (!lock.owns_lock()) return;
   found_.clear();
+  const std::int64_t worked = strip_.shadow_ns();
   if (all_is_in)
-    strip_.exchange()->progress();
+    strip_.progress();
   else
     poll_links();
-  clock_.polled(begin, found_);
+  clock_.polled(begin, found_, strip_.shadow_ns() - worked);
 }
 
 template <int Dim>
@@ -112,16 +117,20 @@ void HaloWatch<Dim>::await(bool left_only) {
     const std::lock_guard<std::mutex> lock(guard_);
     clock_.begin_wait(begin);
   }
+  std::int64_t worked = 0;
   wait_until(
       [&] {
         const std::unique_lock<std::mutex> lock(guard_, std::try_to_lock);
-        if (lock.owns_lock()) poll_links();
-        return lock.owns_lock() && is_over();
+        if (!lock.owns_lock()) return false;
+        const std::int64_t before = strip_.shadow_ns();
+        poll_links();
+        worked += strip_.shadow_ns() - before;
+        return is_over();
       },
       [this] { return name_of_missing(); });
   const StepClock::Instant end = clock_.instant();
   const std::lock_guard<std::mutex> lock(guard_);
-  clock_.end_wait(begin, end);
+  clock_.end_wait(begin, end, worked);
 }
 
 template <int Dim>

@@ -15,6 +15,7 @@ struct CutShape {
   CutForm form = CutForm::Strips;
   std::array<int, 3> ranks{1, 1, 1};
   std::array<int, 3> lanes{1, 1, 1};  ///< of a rank
+  int depth = 0;  ///< strips: slabs beyond each cut between ranks that are stepped here, too
 
   [[nodiscard]] int along(int axis) const {
     const auto k = static_cast<std::size_t>(axis);

@@ -167,8 +167,8 @@ template <int Dim>
 CutsInUse Simulation::EngineOf<Dim>::cuts() const {
   const CutShape& shape = parts_.lanes.shape();
   const CutRoom room = room_of(parts_.world.grid, 0);
-  return {shape.form == CutForm::Strips, along_xyz(shape.ranks, room),
-          along_xyz(shape.lanes, room)};
+  return {shape.form == CutForm::Strips, along_xyz(shape.ranks, room), along_xyz(shape.lanes, room),
+          shape.depth};
 }
 
 template ParticleView Simulation::EngineOf<2>::view_of(int);

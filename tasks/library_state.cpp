@@ -86,6 +86,8 @@ void Simulation::EngineOf<Dim>::load(const State::Data& state) {
   parts_.rebuild.set_cuts(s.cuts);
   parts_.world.walls = s.walls;
   lists_.recall(s.walls_at_renewal);
+  strip.forget_shadows();
+  if (parts_.lanes.shape().depth > 0) lists_.demand();
   for (std::size_t w = 0; w < s.walls.size(); ++w) {
     set_wall_load(w, s.loads[w]);
     if (s.normals[w] != model_.walls[w].normal) turn_wall(w, s.normals[w]);

@@ -19,13 +19,14 @@ std::int64_t check_from(std::int64_t step) {
 }  // namespace
 
 RebuildSchedule::RebuildSchedule(const Communicator& communicator, double skin, double dt,
-                                 double gravity, int look_every)
+                                 double gravity, int look_every, int lag)
     : is_root_(communicator.is_root()),
       reduction_(communicator, kMaxima, kSums),
       skin_(skin),
       dt_(dt),
       gravity_(gravity),
       look_every_(look_every),
+      lag_(lag),
       lists_end_(end_of_lists(0, 0.0, 0.0, 0)) {}
 
 std::int64_t RebuildSchedule::end_of_lists(std::int64_t from, double distance, double speed,
@@ -39,13 +40,14 @@ std::int64_t RebuildSchedule::end_of_lists(std::int64_t from, double distance, d
 
 std::int64_t RebuildSchedule::check_in(std::int64_t first, std::int64_t wanted,
                                        std::int64_t lists_end) const {
-  std::int64_t check = std::min(check_from(wanted), next_look(first));
-  while (check > first && check + kLag > lists_end) check -= kCheckEvery;
-  return check;
+  const std::int64_t look = next_look(first);
+  std::int64_t check = std::min(check_from(wanted), look);
+  while (check > first && check + lag_ > lists_end) check -= kCheckEvery;
+  return check + lag_ <= look ? check : look;  // no look waits for another answer
 }
 
-RebuildSchedule::Outlook RebuildSchedule::outlook(const CheckNumbers& answer) const {
-  const std::int64_t answer_step = check_step_ + kLag;
+RebuildSchedule::Outlook RebuildSchedule::outlook(const CheckNumbers& answer,
+                                                  std::int64_t answer_step) const {
   const std::int64_t end =
       is_check_over_ ? end_of_lists(lists_step_, 0.0, answer.speed, check_step_)
                      : end_of_lists(check_step_, answer.distance, answer.speed, check_step_);
@@ -54,6 +56,7 @@ RebuildSchedule::Outlook RebuildSchedule::outlook(const CheckNumbers& answer) co
 
 void RebuildSchedule::begin_check(const CheckNumbers& mine, Wishes wishes) {
   is_check_over_ = false;
+  check_skin_ = skin_;
   const double maxima[kMaxima] = {mine.distance,
                                   mine.speed,
                                   static_cast<double>(mine.outside),
@@ -87,20 +90,24 @@ CheckNumbers RebuildSchedule::numbers() const {
 std::optional<RebuildSchedule::Foresight> RebuildSchedule::foresee() {
   wait();
   const CheckNumbers answer = numbers();
-  const Outlook next = outlook(answer);
+  const Outlook next = outlook(answer, check_step_ + lag_);
   const bool has_wish = reduction_.maxima()[4] > 0.0 || reduction_.maxima()[5] > 0.0 ||
                         (answer.skin > 0.0 && answer.skin != skin_);
-  if (next.lists_end < next.next_check + kLag || has_wish) return std::nullopt;
+  if (next.lists_end < next.next_check + lag_ || has_wish) return std::nullopt;
   return Foresight{answer, next.next_check};
 }
 
 bool RebuildSchedule::must_rebuild(std::int64_t step) {
-  if (step != check_step_ + kLag) return step >= lists_end_;
+  // After a restart with a shorter lag the answer may be overdue.
+  if (step < check_step_ + lag_) return step >= lists_end_;
   wait();
   stop_agreed_ = reduction_.maxima()[4] > 0.0;
   save_agreed_ = reduction_.maxima()[5] > 0.0;
   answer_ = numbers();
-  const Outlook next = outlook(*answer_);
+  // Of lists before these, which may have had a larger skin.
+  if (is_check_over_ && answer_->distance <= 0.5 * check_skin_)
+    answer_->distance = std::min(answer_->distance, 0.5 * skin_);
+  const Outlook next = outlook(*answer_, step);
   speed_ = answer_->speed;
   speed_step_ = check_step_;
   lists_end_ = next.lists_end;
@@ -112,7 +119,7 @@ bool RebuildSchedule::must_rebuild(std::int64_t step) {
 void RebuildSchedule::rebuilt(std::int64_t step) {
   lists_step_ = step;
   lists_end_ = end_of_lists(step, 0.0, speed_, speed_step_);
-  if (check_step_ < step && check_step_ + kLag >= step) {
+  if (check_step_ < step && check_step_ + lag_ >= step) {
     is_check_over_ = true;
     return;
   }

@@ -33,9 +33,10 @@ struct CheckNumbers {
 /// t the time since then until the n-th step. So speeds may double, beside what gravity adds.
 ///
 /// A check at step s takes the exact global maxima of d and v. The reduction has until step
-/// s + kLag to come in, behind the work of kLag steps; the rule with its numbers says anew when
+/// s + lag to come in, behind the work of these steps; the rule with its numbers says anew when
 /// lists end. Checks lie on multiples of kCheckEvery. The next one comes as late as its answer may,
-/// before lists end, and at most after twice the time since the last one.
+/// before lists end, and at most after twice the time since the last one. The lag is kLag, or more
+/// where messages take longer than steps.
 ///
 /// The engine verifies the bound when it takes the answer: d > skin/2 means that a contact may have
 /// been missed, which is an error, never silence.
@@ -58,22 +59,23 @@ class RebuildSchedule {
   };
 
   /// @param look_every  a multiple of kCheckEvery
+  /// @param lag  an even number, at most look_every
   RebuildSchedule(const Communicator& communicator, double skin, double dt, double gravity,
-                  int look_every);
+                  int look_every, int lag = kLag);
 
   /// Whether the check of step `step` is due, so that travel() must be called. Before the step.
   [[nodiscard]] bool is_check_due(std::int64_t step) const { return step == check_step_; }
   [[nodiscard]] bool is_look(std::int64_t step) const { return step % look_every_ == 0; }
   /// The first step after `step` before which a check is due, or the answer of one, or new lists.
   [[nodiscard]] std::int64_t next_part(std::int64_t step) const {
-    return std::min(step < check_step_ ? check_step_ : check_step_ + kLag, lists_end_);
+    return std::min(step < check_step_ ? check_step_ : check_step_ + lag_, lists_end_);
   }
   [[nodiscard]] double speed() const { return speed_; }  ///< the largest, as last known [m/s]
   void begin_check(const CheckNumbers& mine, Wishes wishes);
 
   /// The decision for `step`, before it; waits for the reduction when its time has come.
   [[nodiscard]] bool must_rebuild(std::int64_t step);
-  /// On a lone rank: the answer of the check just begun, kLag steps early, and the step of the next
+  /// On a lone rank: the answer of the check just begun, lag steps early, and the step of the next
   /// check; none, if lists end before its answer or some rank had a wish. Changes nothing.
   [[nodiscard]] std::optional<Foresight> foresee();
   /// What the check found that the last must_rebuild() had the answer of; once.
@@ -134,7 +136,8 @@ class RebuildSchedule {
   };
   void wait();
   [[nodiscard]] CheckNumbers numbers() const;  ///< @pre the reduction is complete
-  [[nodiscard]] Outlook outlook(const CheckNumbers& answer) const;
+  /// @param answer_step  before which it is known
+  [[nodiscard]] Outlook outlook(const CheckNumbers& answer, std::int64_t answer_step) const;
   /// From `first` on about `wanted`, with its answer before lists end where that can be.
   [[nodiscard]] std::int64_t check_in(std::int64_t first, std::int64_t wanted,
                                       std::int64_t lists_end) const;
@@ -146,7 +149,8 @@ class RebuildSchedule {
   Reduction reduction_;
   std::optional<CheckNumbers> answer_;
   double skin_, dt_, gravity_;
-  int look_every_;
+  double check_skin_ = 0.0;  ///< that lists had at the last check [m]
+  int look_every_, lag_;
   double speed_ = 0.0;                       ///< the largest, as last known [m/s], and
   std::int64_t speed_step_ = 0;              ///< of which step
   std::int64_t lists_step_ = 0, lists_end_;  ///< steps that lists serve: [begin, end)

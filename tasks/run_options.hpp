@@ -25,14 +25,16 @@ struct TestHooks : ExchangeHooks {  ///< tasks are delayed as messages are
     std::int64_t step = 0;      ///< in the first rebuild from this step on
   };
   LossFault loss;
-  int rebuild_every = 0;  ///< also rebuild at multiples of it
+  int rebuild_every = 0;         ///< also rebuild at multiples of it
+  bool compare_shadows = false;  ///< with their owners at each rebuild; debug builds always do
 };
 
 /// How to carry out a run. No option changes a bit of the result.
 struct RunOptions {
   int threads = 0;                ///< per rank; 0 = cores of the node over ranks on it
   std::string exchange = "auto";  ///< see exchange_choices()
-  std::string cuts;  ///< auto, strips, or bricks such as 2,2,1; empty: as the deck says
+  std::string cuts;          ///< auto, strips, or bricks such as 2,2,1; empty: as the deck says
+  std::optional<int> depth;  ///< of shadows, instead of the deck's exchange.depth
   Schedule schedule = Schedule::Overlap;
   Progress progress = Progress::Poll;
   std::optional<ContactSearchKind> search;  ///< instead of the deck's

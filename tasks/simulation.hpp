@@ -60,6 +60,7 @@ struct Timings {
 struct CutsInUse {
   bool are_strips = true;
   std::array<int, 3> ranks{1, 1, 1}, lanes{1, 1, 1};
+  int depth = 0;  ///< of shadows beyond each cut between ranks
 };
 
 /// A DEM simulation on all ranks of a communicator.

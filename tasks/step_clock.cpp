@@ -31,9 +31,10 @@ void StepClock::sent(int link, const Sending& times, std::int64_t in_exchange) {
   trace_->sent(link, trace_->step() + 1, times.handed_over);
 }
 
-void StepClock::polled(std::int64_t begin, std::span<const int> found) {
+void StepClock::polled(std::int64_t begin, std::span<const int> found, std::int64_t worked) {
   const std::int64_t end = now_ns();
-  poll_ += end - begin;
+  poll_ += end - begin - worked;
+  busy_ += worked;
   if (trace_ == nullptr) return;
   // A slice for each, since polls in vain are many.
   for (const int link : found) trace_->slice(Trace::Slice::Poll, link, begin, end);
@@ -50,6 +51,7 @@ void StepClock::noticed(int link, int lane, std::int64_t posted, bool is_last) {
     wait_ += until - since;
     late_ += std::clamp<std::int64_t>(posted - since, 0, until - since);
   }
+  if (has_shadows_) return;
   if (is_last && sent_at_ != 0) flight_ += now - sent_at_;
   if (trace_ != nullptr) trace_->noticed(link, trace_->step(), now);
 }
@@ -63,9 +65,10 @@ void StepClock::begin_wait(const Instant& begin) {
   posted_ = 0;
 }
 
-void StepClock::end_wait(const Instant& begin, const Instant& end) {
+void StepClock::end_wait(const Instant& begin, const Instant& end, std::int64_t worked) {
   const std::int64_t waited = end.at - begin.at;
-  const std::int64_t all = std::max(waited, num_lanes() * waited - (end.busy - begin.busy));
+  const std::int64_t all =
+      std::max(waited, num_lanes() * waited - (end.busy - begin.busy)) - worked;
   wait_ += all;
   // Of that the share before the last message left its sender.
   const std::int64_t late = std::clamp<std::int64_t>(posted_ - begin.at, 0, waited);

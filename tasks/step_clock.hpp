@@ -30,7 +30,9 @@ struct StepTimes {
 /// Times of the clock are now_ns().
 class StepClock {
  public:
-  explicit StepClock(int num_lanes) : lanes_(static_cast<std::size_t>(num_lanes)) {}
+  /// @param has_shadows  what is noticed is theirs, not a message
+  explicit StepClock(int num_lanes, bool has_shadows = false)
+      : lanes_(static_cast<std::size_t>(num_lanes)), has_shadows_(has_shadows) {}
 
   /// @param trace  lives longer; null: stop recording
   void set_trace(Trace* trace) { trace_ = trace; }
@@ -48,7 +50,8 @@ class StepClock {
   /// @param in_exchange  of the time from begin to end [ns]; the rest is packing
   void sent(int link, const Sending& times, std::int64_t in_exchange);
   /// @param found  the links whose halo it found
-  void polled(std::int64_t begin, std::span<const int> found);
+  /// @param worked  of the time since, in steps of shadows [ns]
+  void polled(std::int64_t begin, std::span<const int> found, std::int64_t worked);
   /// @param posted  when the neighbour sent it; 0: not known. @param is_last  all halos are in now
   /// @param lane  that the link belongs to
   void noticed(int link, int lane, std::int64_t posted, bool is_last);
@@ -57,7 +60,8 @@ class StepClock {
   };
   /// Idle workers wait for halos: all, but for the time that some spend in bands meanwhile.
   void begin_wait(const Instant& begin);
-  void end_wait(const Instant& begin, const Instant& end);
+  /// @param worked  by who waited, in steps of shadows [ns]
+  void end_wait(const Instant& begin, const Instant& end, std::int64_t worked);
 
   // ---- by anyone
   [[nodiscard]] Instant instant() const;
@@ -82,10 +86,11 @@ class StepClock {
   [[nodiscard]] int num_lanes() const { return static_cast<int>(lanes_.size()); }
 
   std::deque<OfLane> lanes_;
+  bool has_shadows_;
   Trace* trace_ = nullptr;
   // All in nanoseconds.
   std::int64_t send_ = 0, poll_ = 0, wait_ = 0, late_ = 0, flight_ = 0, run_ = 0;
-  std::atomic<std::int64_t> busy_{0};            ///< in bands
+  std::atomic<std::int64_t> busy_{0};            ///< in bands, and shadows between chunks
   std::int64_t waits_since_ = 0;                 ///< 0: nobody does
   std::int64_t posted_ = 0;                      ///< the last that came in a wait, by its sender
   std::int64_t sent_at_ = 0, next_sent_at_ = 0;  ///< first send of this step's halo, of the next's

@@ -26,7 +26,7 @@ GraphShape shape_of(const Strip<Dim>& strip, Schedule schedule) {
 template <int Dim>
 StepGraph<Dim>::StepGraph(Strip<Dim>& strip, const RunOptions& options)
     : strip_(strip),
-      clock_(strip.num_lanes()),
+      clock_(strip.num_lanes(), strip.has_shadows()),
       shape_(shape_of(strip, options.schedule)),
       steps_(static_cast<std::size_t>(strip.num_lanes())),
       delays_(options.hooks),
@@ -55,6 +55,7 @@ void StepGraph<Dim>::run(const StepFrame& frame, int num_steps) {
   const std::int64_t begun = now_ns();
   frame_ = frame;
   num_steps_ = num_steps;
+  strip_.begin_step(frame);
   steps_.assign(steps_.size(), 0);
   clock_.begin_run();
   watch_.begin_run();

@@ -28,6 +28,12 @@ Strip<Dim>::Strip(World<Dim>& world, const Communicator& communicator,
   for (std::size_t l = 0; l < ties_.size(); ++l) lanes_.emplace_back(world);
   tie_lanes();
   awaited_.resize(ends_.size());
+  const int depth = map.shape().depth;
+  for (const LinkEnd& end : ends_) {
+    shadows_.push_back(depth > 0 ? std::make_unique<Shadows<Dim>>(world, end.side, depth)
+                                 : nullptr);
+    deep_sent_at_.emplace_back(static_cast<std::size_t>(depth) + 2, 0);
+  }
   shares_clock_.resize(ends_.size());
   if (!exchange_) return;
   const auto nodes = nodes_of_ranks(communicator);
@@ -86,6 +92,8 @@ void Strip<Dim>::take_halo(int l, int tie) {
     return;
   }
   if (!awaits(from.link)) return;
+  if (const Shadows<Dim>* beyond = shadows(from.link))
+    return unpack_halo(brick, tie, beyond->halo());
   const auto message = exchange_->received(from.link);
   if (returns() && from.side == Side::Right) {
     results_.resize(message.size() / sizeof(double));
@@ -134,10 +142,23 @@ void Strip<Dim>::set_exchange(std::unique_ptr<Exchange> exchange) {
 }
 
 template <int Dim>
+void Strip<Dim>::send_deep(int link) {
+  const LinkEnd& end = end_of(link);
+  const Brick<Dim>& brick = lane(end.lane).brick;
+  shadows(link)->tell(brick, end.tie);
+  const Rows rows = deep_rows(link);
+  send(link, halo_bytes(brick, rows),
+       [&](std::span<std::byte> message) { pack_halo(brick, rows, message); });
+  auto& ring = deep_sent_at_[static_cast<std::size_t>(link)];
+  ring[static_cast<std::size_t>(shadows(link)->steps()) % ring.size()] = sent_at_;
+}
+
+template <int Dim>
 void Strip<Dim>::send_halo(int l, int tie) {
   const Brick<Dim>& brick = lane(l).brick;
   const LaneTie& to = ties(l)[static_cast<std::size_t>(tie)];
   if (to.link >= 0) {
+    if (shadows(to.link) != nullptr) return send_deep(to.link);
     if (returns() && to.side == Side::Left) return;  // ghosts go right only
     return send(to.link, halo_bytes(brick, tie),
                 [&](std::span<std::byte> message) { pack_halo(brick, tie, message); });
@@ -162,8 +183,8 @@ void Strip<Dim>::end_step() {
 
 template <int Dim>
 void Strip<Dim>::wait_halo(int link) {
-  wait_until([&] { return exchange_->poll(link); }, [&] { return name_of_halo(link); });
-  if (trace_ != nullptr) trace_->noticed(link, halo_step_, now_ns());
+  wait_until([&] { return poll(link); }, [&] { return name_of_halo(link); });
+  if (trace_ != nullptr && shadows(link) == nullptr) trace_->noticed(link, halo_step_, now_ns());
 }
 
 template <int Dim>
@@ -184,8 +205,13 @@ void Strip<Dim>::complete_halo() {
   for (int link = 0; link < num_links(); ++link) {
     if (!awaits_ghosts(link)) continue;
     wait_halo(link);
-    unpack_halo(lane(end_of(link).lane).brick, end_of(link).tie, exchange_->received(link));
-    exchange_->release(link);
+    Brick<Dim>& brick = lane(end_of(link).lane).brick;
+    if (const Shadows<Dim>* beyond = shadows(link)) {
+      unpack_halo(brick, end_of(link).tie, beyond->halo());
+    } else {
+      unpack_halo(brick, end_of(link).tie, exchange_->received(link));
+      exchange_->release(link);
+    }
     awaited_[static_cast<std::size_t>(link)] = false;
   }
   set_fresh();
@@ -195,10 +221,15 @@ template <int Dim>
 std::int64_t Strip<Dim>::discard_halo() {
   std::int64_t posted = 0;
   for (int link = 0; link < num_links(); ++link) {
-    if (!awaits_ghosts(link)) continue;
-    wait_halo(link);
+    if (shadows(link) != nullptr) {
+      drain(link);
+    } else if (awaits_ghosts(link)) {
+      wait_halo(link);
+      exchange_->release(link);
+    } else {
+      continue;
+    }
     posted = std::max(posted, posted_at(link));
-    exchange_->release(link);
   }
   await_none();
   return posted;
@@ -215,6 +246,8 @@ void Strip<Dim>::begin_lists() {
   }
   set_fresh();
   await_none();
+  lists_step_ = step;
+  are_shadows_stale_ = false;
   if (!returns()) return;
   results_.reserve(most_results_bytes() / sizeof(double));
   // In the published scheme results come back even where ghosts are fresh.
@@ -231,7 +264,11 @@ std::size_t Strip<Dim>::most_results_bytes() const {
 template <int Dim>
 std::size_t Strip<Dim>::most_halo_bytes() const {
   std::size_t most = returns() ? most_results_bytes() : 0;
-  for (const LinkEnd& end : ends_) most = std::max(most, halo_bytes(lane(end.lane).brick, end.tie));
+  for (int link = 0; link < num_links(); ++link) {
+    const Brick<Dim>& brick = lane(end_of(link).lane).brick;
+    most = std::max(most, shadows(link) == nullptr ? halo_bytes(brick, end_of(link).tie)
+                                                   : halo_bytes(brick, deep_rows(link)));
+  }
   return most;
 }
 
@@ -261,6 +298,7 @@ template <int Dim>
 std::size_t Strip<Dim>::bytes() const {
   std::size_t n = 0;
   for (const Lane<Dim>& lane : lanes_) n += lane.bytes();
+  for (const auto& beyond : shadows_) n += beyond != nullptr ? beyond->bytes() : 0;
   return n;
 }
 

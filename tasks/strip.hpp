@@ -14,6 +14,7 @@
 #include <barchan/core/brick/lane.hpp>
 #include <barchan/tasks/cut_scheme.hpp>
 #include <barchan/tasks/lane_map.hpp>
+#include <barchan/tasks/shadows.hpp>
 #include <barchan/tasks/trace.hpp>
 
 namespace barchan {
@@ -28,6 +29,9 @@ namespace barchan {
 /// with an outbox in memory for a message: a lane writes the outbox of step k + 1 when what is
 /// beside the cut is finished in step k. Outboxes come in pairs, so that the neighbour may still
 /// read the one of step k.
+///
+/// With a depth (CutShape) each link has shadows of the lane beyond it, which stand between the
+/// lane here and its messages: these come from farther behind the cut, and may be late.
 template <int Dim>
 class Strip {
  public:
@@ -65,7 +69,15 @@ class Strip {
   // ---- the step
   /// Whether a message of another rank is due in this step.
   [[nodiscard]] bool awaits(int link) const { return awaited_[static_cast<std::size_t>(link)]; }
-  [[nodiscard]] bool poll(int link) { return exchange_->poll(link); }
+  /// Whether what a band waits for is in. Lets shadows take their steps.
+  [[nodiscard]] bool poll(int link);
+  /// Lets the exchange, and shadows, advance, where all that this step needs is in.
+  void progress();
+  /// Of a link over which all is in that this step needs.
+  void advance_shadows(int link);
+  [[nodiscard]] bool has_shadows() const { return map_.shape().depth > 0 && num_links() > 0; }
+  /// Before a step, on all lanes.
+  void begin_step(const StepFrame& frame);
   /// When the neighbour sent the message that is in [ns]; 0: not known, its clock is another one.
   [[nodiscard]] std::int64_t posted_at(int link) const {
     return shares_clock(link) ? exchange_->halo_times(link).posted : 0;
@@ -94,6 +106,16 @@ class Strip {
   // ---- lists made anew
   /// Waits for halos on their way and drops them. @return when the last was sent [ns]; 0: not known
   std::int64_t discard_halo();
+  /// Tests: at the end of lists shadows are held against their owners.
+  void keep_shadows_level() { keeps_level_ = true; }
+  /// The state has been changed between steps, but not that of shadows, until lists are made anew.
+  void forget_shadows() { are_shadows_stale_ = true; }
+  [[nodiscard]] bool are_shadows_stale() const { return are_shadows_stale_; }
+  [[nodiscard]] bool keeps_shadows_level() const { return keeps_level_; }
+  /// Of a link; null: none.
+  [[nodiscard]] Shadows<Dim>* shadows(int link) const {
+    return shadows_[static_cast<std::size_t>(link)].get();
+  }
   /// Ghosts and lists are new: the next step needs no halo, and halos have these sizes.
   void begin_lists();
   [[nodiscard]] std::size_t most_halo_bytes() const;  ///< of a message to a neighbour
@@ -105,6 +127,9 @@ class Strip {
   [[nodiscard]] std::int64_t send_ns() const { return send_ns_; }
   /// When the last message was handed to the exchange: nobody notices it earlier.
   [[nodiscard]] std::int64_t sent_at() const { return sent_at_; }
+  [[nodiscard]] std::int64_t shadow_ns() const;  ///< in steps of shadows
+  /// Of messages to shadows, from the own one of that step until they were taken.
+  [[nodiscard]] std::int64_t shadow_flight_ns() const { return flight_ns_; }
   void set_trace(Trace* trace) { trace_ = trace; }
   [[nodiscard]] Trace* trace() const { return trace_; }
   [[nodiscard]] std::int64_t num_owned() const;
@@ -135,6 +160,10 @@ class Strip {
     return awaits(link) && !(returns() && end_of(link).side == Side::Right);
   }
   void take_halo(int l, int tie);
+  [[nodiscard]] Rows deep_rows(int link) const;
+  void send_deep(int link);
+  bool take_deep(int link);
+  void drain(int link);
   void await_none() { awaited_.assign(awaited_.size(), false); }
   [[nodiscard]] std::size_t most_results_bytes() const;  ///< of forces in the published scheme
   /// What the lane beside wrote for the step at hand. @pre the tie leads to a lane of this rank
@@ -152,6 +181,10 @@ class Strip {
   CutScheme scheme_;
   std::deque<Lane<Dim>> lanes_;
   std::vector<Post> posts_;
+  std::vector<std::unique_ptr<Shadows<Dim>>> shadows_;   ///< by link
+  std::vector<std::vector<std::int64_t>> deep_sent_at_;  ///< by link, a ring by message [ns]
+  bool keeps_level_ = false, are_shadows_stale_ = false;
+  std::int64_t lists_step_ = 0, flight_ns_ = 0;
   std::vector<double> results_;     ///< of the published scheme, going or come
   std::vector<bool> shares_clock_;  ///< by link
   std::vector<bool> awaited_;       ///< by link: a message of another rank is due in this step

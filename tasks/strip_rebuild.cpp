@@ -8,8 +8,12 @@
 
 #include <barchan/comm/base/tape.hpp>
 #include <barchan/comm/base/watchdog.hpp>
+#include <barchan/core/base/bytes.hpp>
 #include <barchan/core/base/clock.hpp>
+#include <barchan/core/base/error.hpp>
+#include <barchan/core/brick/cell_order.hpp>
 #include <barchan/core/brick/checkpoint.hpp>
+#include <barchan/core/brick/measure.hpp>
 #include <barchan/tasks/cuts.hpp>
 #include <barchan/tasks/strip_plan.hpp>
 #include <barchan/tasks/strip_seed.hpp>
@@ -27,6 +31,8 @@ StripRebuild<Dim>::StripRebuild(Strip<Dim>& strip)
       work_(strip.num_lanes()),
       sizes_(strip.communicator(), 1, 0),
       outboxes_(static_cast<std::size_t>(strip.num_lanes())),
+      slab_digests_(static_cast<std::size_t>(strip.num_links())),
+      shadow_digests_(slab_digests_.size()),
       outgoing_(static_cast<std::size_t>(strip.num_links())) {
   for (int l = 0; l < strip.num_lanes(); ++l) outboxes(l).resize(strip.ties(l).size());
 }
@@ -73,7 +79,9 @@ void StripRebuild<Dim>::rebuild(const ForEachLane& parallel) {
   // A halo that is on its way is of no use any more. Where the exchange allows it, it is waited for
   // behind migration.
   const Exchange* exchange = strip_.exchange();
-  if (exchange != nullptr && !exchange->allows_uneven_sides()) discard_halo();
+  if (exchange != nullptr && (!exchange->allows_uneven_sides() || strip_.keeps_shadows_level()))
+    discard_halo();
+  note_slabs();
   ++num_rebuilds_;
   if (num_rebuilds_ % kRecutEvery == 0) recut();
   migrate(parallel);
@@ -158,10 +166,60 @@ std::span<const std::byte> StripRebuild<Dim>::bulk(const LaneTie& tie) {
 }
 
 template <int Dim>
+void StripRebuild<Dim>::note_slabs() {
+  if (!strip_.keeps_shadows_level()) return;
+  for (int link = 0; link < strip_.num_links(); ++link) {
+    const Shadows<Dim>* beyond = strip_.shadows(link);
+    if (beyond == nullptr) continue;
+    const auto& end = strip_.end_of(link);
+    const Brick<Dim>& brick = strip_.lane(end.lane).brick;
+    const auto at = static_cast<std::size_t>(link);
+    slab_digests_[at].clear();
+    shadow_digests_[at].clear();
+    if (strip_.are_shadows_stale()) continue;
+    for (int n = 0; n < beyond->depth(); ++n)
+      slab_digests_[at].push_back(digest(brick, slab_behind(brick, end.side, n)));
+    shadow_digests_[at] = beyond->digests();
+  }
+}
+
+template <int Dim>
+void StripRebuild<Dim>::pack_ghosts(int l, int tie) {
+  Bytes& message = outboxes(l)[static_cast<std::size_t>(tie)];
+  const int link = strip_.ties(l)[static_cast<std::size_t>(tie)].link;
+  const Shadows<Dim>* beyond = link < 0 ? nullptr : strip_.shadows(link);
+  if (beyond == nullptr) return strip_.lane(l).rebuild.pack_ghosts(tie, message);
+  strip_.lane(l).rebuild.pack_slabs(tie, beyond->depth(), message);
+  ByteWriter(message).put_counted(slab_digests_[static_cast<std::size_t>(link)]);
+}
+
+template <int Dim>
+void StripRebuild<Dim>::fill_shadows(int link) {
+  Shadows<Dim>* beyond = strip_.shadows(link);
+  if (beyond == nullptr) return;
+  const auto& end = strip_.end_of(link);
+  ByteReader in(strip_.exchange()->bulk(link));
+  beyond->fill(strip_.lane(end.lane), end.tie, in);
+  const auto theirs = in.take_counted<std::uint64_t>();
+  in.finish();
+  if (theirs == shadow_digests_[static_cast<std::size_t>(link)]) return;
+  throw RunError(fmt::format("rank {}: at step {} shadows of rank {} are not what their owner has",
+                             strip_.communicator().rank(), strip_.step,
+                             strip_.neighbours().rank(link)));
+}
+
+/// For the lists of a lane.
+template <int Dim>
+std::span<const std::byte> StripRebuild<Dim>::ghosts(const LaneTie& tie) {
+  const Shadows<Dim>* beyond = tie.link < 0 ? nullptr : strip_.shadows(tie.link);
+  return beyond == nullptr ? bulk(tie) : beyond->ghosts();
+}
+
+template <int Dim>
 void StripRebuild<Dim>::exchange_ghosts(const ForEachLane& parallel) {
   parallel([this](int l) {
     for (std::size_t tie = 0; tie < outboxes(l).size(); ++tie)
-      strip_.lane(l).rebuild.pack_ghosts(static_cast<int>(tie), outboxes(l)[tie]);
+      pack_ghosts(l, static_cast<int>(tie));
   });
   begin_bulk();
   parallel([this](int l) { strip_.lane(l).lists.list_owned(); });  // the messages travel meanwhile
@@ -169,10 +227,11 @@ void StripRebuild<Dim>::exchange_ghosts(const ForEachLane& parallel) {
   const bool returns = strip_.scheme() == CutScheme::Returned;
   if (!is_alone && !returns) begin_sizes();
   if (!is_alone) wait_bulk("ghosts", waits_.ghosts, Trace::Slice::Ghosts);
+  for (int link = 0; link < strip_.num_links(); ++link) fill_shadows(link);
   parallel([this](int l) {
     Lane<Dim>& lane = strip_.lane(l);
     std::vector<std::span<const std::byte>> messages;
-    for (const LaneTie& tie : strip_.ties(l)) messages.push_back(bulk(tie));
+    for (const LaneTie& tie : strip_.ties(l)) messages.push_back(ghosts(tie));
     lane.rebuild.take_ghosts(messages);
     lane.rebuild.restore_history();
     lane.lists.cut_chunks(chunk_pairs);

@@ -75,6 +75,11 @@ class StripRebuild {
   /// Sends the outboxes of links. bulk() gives what came, from a rank or a lane.
   void begin_bulk();
   [[nodiscard]] std::span<const std::byte> bulk(const LaneTie& tie);
+  /// Sums of hashes of the slabs that are somebody's shadows.
+  void note_slabs();
+  void pack_ghosts(int l, int tie);
+  void fill_shadows(int link);
+  [[nodiscard]] std::span<const std::byte> ghosts(const LaneTie& tie);
   [[nodiscard]] Placement<Dim> placement_of(int l) const {
     return placement<Dim>(strip_.map(), cuts_, strip_.communicator().rank(), l, strip_.ties(l));
   }
@@ -85,8 +90,10 @@ class StripRebuild {
 
   Strip<Dim>& strip_;
   WorkMeter work_;
-  Reduction sizes_;                                   ///< of halos to come
-  std::vector<std::vector<Bytes>> outboxes_;          ///< by lane and tie
+  Reduction sizes_;                           ///< of halos to come
+  std::vector<std::vector<Bytes>> outboxes_;  ///< by lane and tie
+  /// By link and slab; empty where nobody compares, or nothing is there yet.
+  std::vector<std::vector<std::uint64_t>> slab_digests_, shadow_digests_;
   std::vector<std::span<const std::byte>> outgoing_;  ///< by link
   Cuts cuts_;
   std::span<const ParticleData> newcomers_;

@@ -17,8 +17,8 @@ namespace barchan {
 namespace {
 
 constexpr std::array<const char*, static_cast<std::size_t>(Trace::Slice::kNum)> kSliceNames{
-    "chunk", "left band", "right band", "send",   "poll",
-    "wait",  "rebuild",   "migration",  "ghosts", "reduction"};
+    "chunk",   "left band", "right band", "send",      "poll",   "wait",
+    "rebuild", "migration", "ghosts",     "reduction", "shadows"};
 constexpr std::array<const char*, static_cast<std::size_t>(Trace::Counter::kNum)> kCounterNames{
     "exposed per step [us]", "in flight per step [us]"};
 

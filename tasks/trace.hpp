@@ -31,6 +31,7 @@ class Trace {
     Migration,
     Ghosts,
     Reduction,
+    Shadows,
     kNum
   };
   enum class Counter : std::uint8_t { ExposedMicroseconds, FlightMicroseconds, kNum };

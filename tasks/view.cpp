@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include <barchan/core/base/clock.hpp>
 #include <barchan/core/brick/measure.hpp>
 #include <barchan/core/particles/row_particle.hpp>
 
@@ -165,16 +166,19 @@ Timings timings_of(const RunParts<Dim>& run, const StepTimes& steps, const LoopS
               {"rebuild_wait", waits.sum()},
               {"reduction_wait", reductions},
               {"search", search.chunks + search.bands + search.rebuild}};
+  const double shadows = to_seconds(run.strip.shadow_ns()) / run.strip.num_lanes();
+  if (run.strip.has_shadows()) t.phases["shadows"] = shadows;
   if (loop.checkpoints > 0.0) t.phases["checkpoint"] = loop.checkpoints;
   double rest = loop.loop;
   for (const auto& [name, seconds] : t.phases) rest -= seconds;
   // Within steps: tasks that start, and workers that wait for each other.
   const double tasks =
-      steps.run - steps.chunks - steps.bands - steps.send - steps.poll - steps.wait;
+      steps.run - steps.chunks - steps.bands - steps.send - steps.poll - steps.wait - shadows;
   t.phases["tasks"] = std::clamp(tasks, 0.0, std::max(0.0, rest));
   t.phases["between_steps"] = std::max(0.0, rest - t.phases["tasks"]);
   if (run.strip.exchange() != nullptr) t.exchange = run.strip.exchange()->stats();
-  t.communication = {{"halo", {steps.in_flight, steps.exposed(), steps.late}},
+  const double in_flight = steps.in_flight + to_seconds(run.strip.shadow_flight_ns());
+  t.communication = {{"halo", {in_flight, steps.exposed(), steps.late}},
                      {"rebuild", {waits.in_flight + waits.halo, waits.sum(), waits.late}},
                      {"reductions", {reductions, reductions}}};
   for (const auto& [name, kind] : t.communication) {

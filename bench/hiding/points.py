@@ -100,7 +100,10 @@ class Barchan:
         self.label = f"{exchange}, {schedule}"
 
     def run(self, start, case, steps):
-        how = ["--progress", "thread"] if self.schedule == "thread" else ["--schedule", self.schedule]
+        if self.schedule.startswith("depth"):
+            how = ["--depth", self.schedule.removeprefix("depth")]
+        else:
+            how = ["--progress", "thread"] if self.schedule == "thread" else ["--schedule", self.schedule]
         result, _ = run_barchan(start, self.path, case, steps, "--quiet", "--exchange", self.name, *how)
         times = result["communication"]
         per_step = 1e6 / max(1, result["steps"])

@@ -9,7 +9,7 @@
 namespace barchan {
 namespace {
 
-/// Two-sided, non-blocking: both slots of each link have a persistent receive posted before the
+/// Two-sided, non-blocking: all slots of each link have a persistent receive posted before the
 /// message can come.
 class Isend final : public TwoSidedExchange {
  public:
@@ -63,16 +63,17 @@ class Isend final : public TwoSidedExchange {
   }
 
   void withdraw() {
-    for_each_slot([this](const MessageKey& key) {
-      Slot& slot = inbox(key);
-      if (slot.request == MPI_REQUEST_NULL) return;
-      if (slot.is_posted) {
-        check(MPI_Cancel(&slot.request), "MPI_Cancel");
-        check_watched("MPI_Wait", [&] { return MPI_Wait(&slot.request, MPI_STATUS_IGNORE); });
-        slot.is_posted = false;
+    for (auto& of_link : inboxes()) {
+      for (Slot& slot : of_link) {
+        if (slot.request == MPI_REQUEST_NULL) continue;
+        if (slot.is_posted) {
+          check(MPI_Cancel(&slot.request), "MPI_Cancel");
+          check_watched("MPI_Wait", [&] { return MPI_Wait(&slot.request, MPI_STATUS_IGNORE); });
+          slot.is_posted = false;
+        }
+        check(MPI_Request_free(&slot.request), "MPI_Request_free");
       }
-      check(MPI_Request_free(&slot.request), "MPI_Request_free");
-    });
+    }
   }
 };
 

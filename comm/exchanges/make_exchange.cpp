@@ -51,7 +51,7 @@ const Entry& entry_of(std::string_view name) {
 std::unique_ptr<Exchange> make_plain(std::string_view name, const Communicator& communicator,
                                      const Neighbours& neighbours, const ExchangeOptions& options) {
   std::unique_ptr<SlotExchange> exchange = entry_of(name).make(communicator, neighbours);
-  exchange->start({options.halo_bytes, options.bulk_bytes});
+  exchange->start({options.halo_bytes, options.bulk_bytes, options.depth});
   return exchange;
 }
 

@@ -13,7 +13,8 @@ namespace {
 ///
 /// A slot's window is exposed to the one neighbour that writes it: for messages 1 and 2 from the
 /// beginning, for n+2 when n is released. So the window that A starts on for n+1 has been posted
-/// when B released n−1, which A knows from B's message n, and MPI_Win_start does not wait.
+/// when B released n−1, which A knows from B's message n, and MPI_Win_start does not wait. With a
+/// depth there are more slots, and the same holds (slot_exchange.hpp).
 class Pscw final : public SlotExchange {
  public:
   Pscw(const Communicator& communicator, const Neighbours& neighbours)
@@ -43,6 +44,7 @@ class Pscw final : public SlotExchange {
  protected:
   void allocate(SlotCapacity capacity) override {
     for_windows([&](const MessageKey& key) {
+      windows_[index(key)].resize(slots(key));
       window(key) = Window(communicator(), slot_bytes(capacity.of(key.channel)));
       if (key.link >= neighbours().num_links()) return;
       expose(key);
@@ -54,6 +56,7 @@ class Pscw final : public SlotExchange {
   void retire() override {
     take_in_the_last();
     for_windows([&](const MessageKey& key) {
+      if (windows_[index(key)].empty()) return;
       Window& slot = window(key);
       if (slot.handle() == MPI_WIN_NULL) return;
       for (int link = 0; link < neighbours().num_links(); ++link) {
@@ -98,11 +101,7 @@ class Pscw final : public SlotExchange {
   /// Of as many links as any rank has: windows are made by all.
   template <class Act>
   void for_windows(Act act) {
-    for (const Channel channel : {Channel::Halo, Channel::Bulk}) {
-      for (int link = 0; link < most_links(); ++link) {
-        for (const std::uint64_t number : {1U, 2U}) act(MessageKey{channel, link, number});
-      }
-    }
+    for_each_slot(most_links(), act);
   }
 
   void start(const Window& slot, int link) const {
@@ -146,11 +145,9 @@ class Pscw final : public SlotExchange {
           "MPI_Win_post");
   }
 
-  Window& window(const MessageKey& key) {
-    return windows_[index(key)][static_cast<std::size_t>(key.slot())];
-  }
+  Window& window(const MessageKey& key) { return windows_[index(key)][slot(key)]; }
 
-  std::vector<std::array<Window, 2>> windows_;  ///< by channel and the receiver's link
+  std::vector<std::vector<Window>> windows_;  ///< by channel and the receiver's link, by slot
   std::vector<std::vector<std::byte>> outboxes_;
   std::vector<MPI_Group> groups_;  ///< by link
   std::vector<std::uint64_t> num_posted_, num_recycled_;

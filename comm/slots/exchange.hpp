@@ -51,7 +51,8 @@ struct HaloTimes {
 ///     poll(n) → received(n) → release(n) → outgoing(n + 1)
 ///
 /// for each link. The last edge is the caller's duty; with it two slots per direction are enough
-/// and no credits are needed (slot_exchange.hpp proves it). A breach throws std::logic_error.
+/// and no credits are needed (slot_exchange.hpp proves it). With ExchangeOptions::depth d it is
+/// release(n − d) → outgoing(n + 1), and there are 2d + 2 slots. A breach throws std::logic_error.
 ///
 /// One caller at a time. Construction, reserve and destruction are collective over the
 /// communicator; destruction while an exception unwinds frees nothing that would wait for the
@@ -130,7 +131,8 @@ struct ExchangeOptions {
   std::size_t halo_bytes = 4096;  ///< first size of the halo slots, equal on every rank
   std::size_t bulk_bytes =
       256 *
-      1024;  ///< first size of a bulk fragment, equal on every rank; longer bulks go in rounds
+      1024;       ///< first size of a bulk fragment, equal on every rank; longer bulks go in rounds
+  int depth = 0;  ///< halo messages of a link that may be under way beside the latest, see Exchange
   ExchangeHooks hooks{};
 };
 

@@ -18,7 +18,6 @@ struct MessageKey {
   int link = 0;
   std::uint64_t number = 0;
 
-  [[nodiscard]] constexpr int slot() const { return static_cast<int>(number & 1U); }
   /// Of its channel and link among all; also the tag of its receiver.
   [[nodiscard]] constexpr int position() const {
     return kNumChannels * link + static_cast<int>(channel);

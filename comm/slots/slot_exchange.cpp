@@ -29,17 +29,17 @@ SlotExchange::SlotExchange(const Communicator& communicator, const Neighbours& n
 
 void SlotExchange::start(SlotCapacity capacity) {
   capacity_ = {round_to_line(capacity.halo),
-               round_to_line(std::max<std::size_t>(capacity.bulk, 64))};
+               round_to_line(std::max<std::size_t>(capacity.bulk, 64)), capacity.depth};
   require_room(capacity_);
   allocate(capacity_);
 }
 
 // Memory that is not there is often granted, and missed only when it is touched.
 void SlotExchange::require_room(SlotCapacity capacity) const {
-  constexpr double most = 2147483647.0;                 // one MPI call moves so much
-  const double slots = 4.0 * std::max(1, most_links_);  // two each way
+  constexpr double most = 2147483647.0;  // one MPI call moves so much
   const double halo = static_cast<double>(capacity.halo), bulk = static_cast<double>(capacity.bulk);
-  const double needed = slots * (halo + bulk);
+  const double needed = 2.0 * std::max(1, most_links_) *  // each way
+                        (capacity.slots(Channel::Halo) * halo + 2.0 * bulk);
   const bool fits =
       std::max(halo, bulk) + 128.0 <= most && needed * communicator_.node_size() <= memory_left();
   if (communicator_.all_of(fits)) return;
@@ -57,7 +57,7 @@ void SlotExchange::reserve(std::size_t bytes) {
       throw std::logic_error("Exchange::reserve: a message is in flight");
     }
   }
-  require_room({bytes + bytes / 2, capacity_.bulk});
+  require_room({bytes + bytes / 2, capacity_.bulk, capacity_.depth});
   retire();
   std::int64_t largest_bulk = static_cast<std::int64_t>(largest_bulk_);
   communicator_.allreduce_max(std::span(&largest_bulk, 1));  // also: everybody has retired
@@ -80,9 +80,10 @@ void SlotExchange::require_neighbour(int link, const char* what) const {
 std::byte* SlotExchange::open_outbox(Channel channel, int link, std::size_t bytes) {
   require_neighbour(link, "Exchange::outgoing");
   Track& mine = track(channel, link);
-  if (mine.released < mine.sent) [[unlikely]] {
+  const auto depth = static_cast<std::uint64_t>(channel == Channel::Halo ? capacity_.depth : 0);
+  if (mine.released + depth < mine.sent) [[unlikely]] {
     throw std::logic_error("Exchange::outgoing: the neighbour's message " +
-                           std::to_string(mine.sent) + " must be released before message " +
+                           std::to_string(mine.sent - depth) + " must be released before message " +
                            std::to_string(mine.sent + 1) + " is packed");
   }
   if (bytes > capacity_.of(channel)) [[unlikely]] {

@@ -7,21 +7,30 @@
 
 namespace barchan {
 
-/// Bytes of payload that a slot of each channel holds, equal on every rank.
+/// Bytes of payload that a slot of each channel holds, and how many slots there are, equal on every
+/// rank.
 struct SlotCapacity {
   std::size_t halo = 0;
   std::size_t bulk = 0;
+  int depth = 0;  ///< messages of a link that may be under way beside the latest (Exchange)
 
-  [[nodiscard]] std::size_t of(Channel channel) const {
+  [[nodiscard]] constexpr std::size_t of(Channel channel) const {
     return channel == Channel::Halo ? halo : bulk;
+  }
+  /// Of a link and way.
+  [[nodiscard]] constexpr int slots(Channel channel) const {
+    return channel == Channel::Halo ? 2 * depth + 2 : 2;
+  }
+  [[nodiscard]] constexpr int slot(const MessageKey& key) const {
+    return static_cast<int>(key.number % static_cast<std::uint64_t>(slots(key.channel)));
   }
 };
 
 /// What all exchanges have in common: numbers, headers, growth, bulk in fragments, figures. A
 /// derived class says where messages lie and how they travel (the protected part).
 ///
-/// Each channel has two slots per link and way; message n uses slot n mod 2. Happens-before, A, B
-/// neighbours, one channel:
+/// Each channel has two slots per link and way; message n uses slot n mod 2. With a depth d halos
+/// have 2d + 2 (below). Happens-before, A, B neighbours, one channel:
 ///
 ///     pack A(n) → post A(n) → arrived B(n) → release B(n)     and the same with A and B swapped
 ///     release of n → pack of n+1, on either rank              duty of the caller, or of the rounds
@@ -32,6 +41,9 @@ struct SlotCapacity {
 ///
 /// When A packs n+1, B has released n−1, which was the last to use that slot, and A's own copy of
 /// n−1 has left.
+///
+/// With a depth d the duty is: release of n−d → pack of n+1. When A packs n+1, it has B's n−d; when
+/// B packed that, it had released A's n−2d−1, the last to use the slot of n+1.
 ///
 /// Bulk: both neighbours send a fragment a round, empty or not, with a flag whether they have more;
 /// rounds go on while either has more, so both see the same end. A slot's capacity grows with
@@ -99,14 +111,26 @@ class SlotExchange : public Exchange {
   [[nodiscard]] MessageKey at_receiver(const MessageKey& key) const {
     return {key.channel, neighbours_.peer(key.link), key.number};
   }
-  /// Calls act(key) for both slots of every channel and link.
+  /// Calls act(key) for all slots of every channel and link, by the first message of each.
   template <class Act>
   void for_each_slot(Act&& act) const {
+    for_each_slot(neighbours_.num_links(), act);
+  }
+  template <class Act>
+  void for_each_slot(int num_links, Act&& act) const {
     for (const Channel channel : {Channel::Halo, Channel::Bulk}) {
-      for (int link = 0; link < neighbours_.num_links(); ++link) {
-        for (const std::uint64_t number : {1U, 2U}) act(MessageKey{channel, link, number});
+      for (int link = 0; link < num_links; ++link) {
+        for (int n = 1; n <= capacity_.slots(channel); ++n)
+          act(MessageKey{channel, link, static_cast<std::uint64_t>(n)});
       }
     }
+  }
+  /// Of a message among those of its channel and link.
+  [[nodiscard]] std::size_t slot(const MessageKey& key) const {
+    return static_cast<std::size_t>(capacity_.slot(key));
+  }
+  [[nodiscard]] std::size_t slots(const MessageKey& key) const {
+    return static_cast<std::size_t>(capacity_.slots(key.channel));
   }
 
  private:

@@ -33,10 +33,10 @@ TwoSidedExchange::~TwoSidedExchange() {
     static_cast<void>(std::make_unique<Slots>(std::move(inboxes_)).release());
     return;
   }
-  for (auto& pair : outboxes_) {
-    for (Slot& slot : pair) {
+  for (auto& of_link : outboxes_) {
+    for (Slot& each : of_link) {
       const CallWatch watch("MPI_Wait");
-      MPI_Wait(&slot.request, MPI_STATUS_IGNORE);
+      MPI_Wait(&each.request, MPI_STATUS_IGNORE);
     }
   }
 }
@@ -45,34 +45,35 @@ void TwoSidedExchange::allocate(SlotCapacity capacity) {
   for (const Channel channel : {Channel::Halo, Channel::Bulk}) {
     for (int link = 0; link < neighbours().num_links(); ++link) {
       if (!neighbours().has(link)) continue;
-      for (Slot& slot : inboxes_[index({channel, link, 0})])
-        slot.memory.resize(slot_bytes(capacity.of(channel)));
-      for (Slot& slot : outboxes_[index({channel, link, 0})])
-        slot.memory.resize(slot_bytes(capacity.of(channel)));
+      for (Slots* boxes : {&inboxes_, &outboxes_}) {
+        auto& slots = (*boxes)[index({channel, link, 0})];
+        slots.resize(static_cast<std::size_t>(capacity.slots(channel)));
+        for (Slot& each : slots) each.memory.resize(slot_bytes(capacity.of(channel)));
+      }
     }
   }
 }
 
 void TwoSidedExchange::retire() {
-  for (auto& pair : outboxes_) {
-    for (Slot& slot : pair) wait(slot.request);
+  for (auto& of_link : outboxes_) {
+    for (Slot& each : of_link) wait(each.request);
   }
 }
 
 // The message that used this slot last has been received, so its send completes without the
 // neighbour.
 std::byte* TwoSidedExchange::outbox(const MessageKey& key) {
-  Slot& slot = outboxes_[index(key)][static_cast<std::size_t>(key.slot())];
-  wait(slot.request);
-  return slot.memory.data();
+  Slot& mine = outboxes_[index(key)][slot(key)];
+  wait(mine.request);
+  return mine.memory.data();
 }
 
 void TwoSidedExchange::post(const MessageKey& key, const MessageHeader& header) {
-  Slot& slot = outboxes_[index(key)][static_cast<std::size_t>(key.slot())];
-  write_header(header, slot.memory.data());
-  check(MPI_Isend(slot.memory.data(), mpi_count(kHeaderBytes + header.bytes), MPI_BYTE,
+  Slot& mine = outboxes_[index(key)][slot(key)];
+  write_header(header, mine.memory.data());
+  check(MPI_Isend(mine.memory.data(), mpi_count(kHeaderBytes + header.bytes), MPI_BYTE,
                   neighbour(key), at_receiver(key).position(), communicator().handle(),
-                  &slot.request),
+                  &mine.request),
         "MPI_Isend");
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include <barchan/comm/base/mpi_include.hpp>
@@ -28,11 +27,10 @@ class TwoSidedExchange : public SlotExchange {
     MPI_Request request = MPI_REQUEST_NULL;
     bool is_posted = false;  // a persistent receive that is active
   };
-  using Slots = std::vector<std::array<Slot, 2>>;  ///< by channel and link
+  using Slots = std::vector<std::vector<Slot>>;  ///< by channel and link
 
-  [[nodiscard]] Slot& inbox(const MessageKey& key) {
-    return inboxes_[index(key)][static_cast<std::size_t>(key.slot())];
-  }
+  [[nodiscard]] Slots& inboxes() { return inboxes_; }
+  [[nodiscard]] Slot& inbox(const MessageKey& key) { return inboxes_[index(key)][slot(key)]; }
   [[nodiscard]] int neighbour(const MessageKey& key) const { return neighbours().rank(key.link); }
   /// Holds the length that came in against the header's.
   void require_whole(const MessageKey& key, const MPI_Status& status);

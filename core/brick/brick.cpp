@@ -11,7 +11,7 @@ void Brick<Dim>::place(const Placement<Dim>& at) {
     link.beyond = at.beyond[n];
     link.sends = cells_beside(grid, box, link.beyond);
     link.takes = cells_beside(grid, link.beyond, box);
-    if (form == CutForm::Bricks) continue;
+    if (form == CutForm::Bricks && !is_shadow) continue;
     const bool is_left = link.side == Side::Left;
     const int num_slabs = grid.num_slabs();
     const int sends = is_left ? box.lo[0] : box.hi[0] - 1;

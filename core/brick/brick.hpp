@@ -59,6 +59,8 @@ template <int Dim>
 struct Brick {
   World<Dim>* world = nullptr;
   CutForm form = CutForm::Strips;
+  /// A slab beyond a cut between strips, stepped here as well (tasks/shadows.hpp).
+  bool is_shadow = false;
   CellBox<Dim> box;
 
   // particles
@@ -106,7 +108,8 @@ struct Brick {
     links.emplace_back().side = side;
     band(side).exists = true;
   }
-  /// Strips take the slab beside each cut, also where two in a ring meet at both ends.
+  /// Strips, and their shadows, take the slab beside each cut, also where two in a ring meet at
+  /// both ends.
   void place(const Placement<Dim>& at);
   [[nodiscard]] int num_chunks() const { return static_cast<int>(chunks.size()) - 1; }
   [[nodiscard]] std::int64_t num_pairs() const {

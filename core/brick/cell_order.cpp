@@ -88,6 +88,15 @@ Places places_among_filled(const Brick<Dim>& brick, std::span<const std::int8_t>
   return places;
 }
 
+/// The first row in a slab, or beyond it. @pre strips
+template <int Dim>
+std::int32_t first_in_slab(const Brick<Dim>& brick, int slab) {
+  const auto begin = brick.store.key.begin();
+  return static_cast<std::int32_t>(
+      std::lower_bound(begin, begin + brick.store.num_owned, slab * brick.world->grid.slab_size()) -
+      begin);
+}
+
 }  // namespace
 
 /// Counting sort.
@@ -131,14 +140,15 @@ void place_bands(Brick<Dim>& brick) {
     brick.interior = {rim, n};
     return;
   }
-  const auto first_in = [&](int slab) {
-    const auto begin = store.key.begin();
-    return static_cast<std::int32_t>(
-        std::lower_bound(begin, begin + n, slab * brick.world->grid.slab_size()) - begin);
-  };
-  left.near = left.rows = {0, left.exists ? first_in(brick.box.lo[0] + 1) : 0};
-  right.near = right.rows = {right.exists ? first_in(brick.box.hi[0] - 1) : n, n};
+  left.near = left.rows = {0, left.exists ? first_in_slab(brick, brick.box.lo[0] + 1) : 0};
+  right.near = right.rows = {right.exists ? first_in_slab(brick, brick.box.hi[0] - 1) : n, n};
   brick.interior = {left.rows.end, std::max(left.rows.end, right.rows.begin)};
+}
+
+template <int Dim>
+Rows slab_behind(const Brick<Dim>& brick, Side side, int number) {
+  const int slab = side == Side::Left ? brick.box.lo[0] + number : brick.box.hi[0] - 1 - number;
+  return {first_in_slab(brick, slab), first_in_slab(brick, slab + 1)};
 }
 
 /// Where a link sends more cells than there are rows, it goes by rows.
@@ -175,6 +185,8 @@ template CellOrder order_by_cells(const Brick<2>&, std::span<const std::int8_t>)
 template CellOrder order_by_cells(const Brick<3>&, std::span<const std::int8_t>);
 template void place_bands(Brick<2>&);
 template void place_bands(Brick<3>&);
+template Rows slab_behind(const Brick<2>&, Side, int);
+template Rows slab_behind(const Brick<3>&, Side, int);
 template void find_runs(Brick<2>&);
 template void find_runs(Brick<3>&);
 

@@ -28,6 +28,10 @@ void place_bands(Brick<Dim>& brick);
 template <int Dim>
 void find_runs(Brick<Dim>& brick);
 
+/// The rows of the slab so many slabs behind the one beside a cut of strips. @pre rows by cells
+template <int Dim>
+[[nodiscard]] Rows slab_behind(const Brick<Dim>& brick, Side side, int number);
+
 extern template CellOrder order_by_cells(const Brick<2>&, std::span<const std::int8_t>);
 extern template CellOrder order_by_cells(const Brick<3>&, std::span<const std::int8_t>);
 extern template void place_bands(Brick<2>&);

@@ -23,21 +23,33 @@ void for_each_halo_field(Store& store, std::int32_t row, F&& f) {
 }  // namespace
 
 template <int Dim>
+std::size_t halo_bytes(const Brick<Dim>& brick, Rows rows) {
+  return static_cast<std::size_t>(rows.end - rows.begin) *
+         halo_record_bytes<Dim>(brick.world->heat.is_on);
+}
+
+template <int Dim>
 std::size_t halo_bytes(const Brick<Dim>& brick, int link) {
   return static_cast<std::size_t>(brick.links[static_cast<std::size_t>(link)].num_sent) *
          halo_record_bytes<Dim>(brick.world->heat.is_on);
 }
 
 template <int Dim>
-void pack_halo(const Brick<Dim>& brick, int link, std::span<std::byte> message) {
+void pack_halo(const Brick<Dim>& brick, Rows rows, std::span<std::byte> message) {
   std::byte* to = message.data();
+  for (std::int32_t i = rows.begin; i < rows.end; ++i) {
+    for_each_halo_field<Dim>(brick.store, i, [&](const void* from, std::size_t bytes) {
+      std::memcpy(to, from, bytes);
+      to += bytes;
+    });
+  }
+}
+
+template <int Dim>
+void pack_halo(const Brick<Dim>& brick, int link, std::span<std::byte> message) {
   for (const Rows rows : brick.links[static_cast<std::size_t>(link)].runs) {
-    for (std::int32_t i = rows.begin; i < rows.end; ++i) {
-      for_each_halo_field<Dim>(brick.store, i, [&](const void* from, std::size_t bytes) {
-        std::memcpy(to, from, bytes);
-        to += bytes;
-      });
-    }
+    pack_halo(brick, rows, message);
+    message = message.subspan(halo_bytes(brick, rows));
   }
 }
 
@@ -117,6 +129,10 @@ void add_results(Brick<Dim>& brick, std::span<const double> results) {
   brick.bonds.import_group(BondSet<Dim>::Right, brick.store, f);
 }
 
+template std::size_t halo_bytes(const Brick<2>&, Rows);
+template std::size_t halo_bytes(const Brick<3>&, Rows);
+template void pack_halo(const Brick<2>&, Rows, std::span<std::byte>);
+template void pack_halo(const Brick<3>&, Rows, std::span<std::byte>);
 template std::size_t halo_bytes(const Brick<2>&, int);
 template std::size_t halo_bytes(const Brick<3>&, int);
 template void pack_halo(const Brick<2>&, int, std::span<std::byte>);

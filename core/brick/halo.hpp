@@ -19,6 +19,12 @@ void pack_halo(const Brick<Dim>& brick, int link, std::span<std::byte> message);
 template <int Dim>
 void unpack_halo(Brick<Dim>& brick, int link, std::span<const std::byte> message);
 
+/// The same of any owned rows, for ghosts farther beyond a cut.
+template <int Dim>
+[[nodiscard]] std::size_t halo_bytes(const Brick<Dim>& brick, Rows rows);
+template <int Dim>
+void pack_halo(const Brick<Dim>& brick, Rows rows, std::span<std::byte> message);
+
 // The published exchange: the band at a right cut goes to the right neighbour, which computes the
 // forces of its contacts and sends them back, summed for every particle of the band: sums are
 // exact.

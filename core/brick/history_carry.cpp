@@ -101,6 +101,48 @@ void HistoryCarry<Dim>::collect_walls(const Way& way) {
   }
 }
 
+/// Of two ends that are known here either may be what the history is of: both get it.
+template <int Dim>
+void HistoryCarry<Dim>::copy(std::span<const std::int32_t> new_row, std::span<const Rows> of,
+                             std::vector<Migration<Dim>>& out) const {
+  const History& form = brick_.world->history_form();
+  const auto& id = brick_.store.id;
+  const auto place_of = [&](std::int32_t row) {
+    return std::ranges::find_if(
+               of, [row](const Rows& rows) { return row >= rows.begin && row < rows.end; }) -
+           of.begin();
+  };
+  const auto give = [&](std::int32_t row, std::int64_t partner, bool is_swapped,
+                        const double* from) {
+    const auto at = static_cast<std::size_t>(place_of(row));
+    if (row < 0 || at == of.size()) return;
+    double* numbers = out[at].contacts.push({row - of[at].begin, partner});
+    for (int c = 0; c < form.length; ++c) numbers[c] = form.sign(c, is_swapped) * from[c];
+  };
+  const auto row_of = [&](std::int32_t source) {
+    return new_row[static_cast<std::size_t>(source)];
+  };
+  for (std::size_t k = 0; k < kept_.size(); ++k) {
+    const std::int32_t a = row_of(kept_.rows[k][0]), b = row_of(kept_.rows[k][1]);
+    give(a, id[static_cast<std::size_t>(b)], false, kept_.history(k));
+    give(b, id[static_cast<std::size_t>(a)], true, kept_.history(k));
+  }
+  for (std::size_t k = 0; k < loose_.size(); ++k) {
+    const std::int32_t row = row_of(loose_.rows[k].handle);
+    const std::int64_t partner = loose_.rows[k].partner;
+    give(row, partner, false, loose_.history(k));
+    give(find_near(row, partner), id[static_cast<std::size_t>(row)], true, loose_.history(k));
+  }
+  for (const WallContact<Dim>& c : walls_) {
+    const std::int32_t row = row_of(c.row);
+    const auto at = static_cast<std::size_t>(place_of(row));
+    if (at == of.size()) continue;
+    WallRecord<Dim>& w = out[at].walls.emplace_back();
+    w = {row - of[at].begin, c.wall, c.image, {}};
+    std::copy_n(c.history, int{kLongestHistory<Dim>}, w.history);
+  }
+}
+
 template <int Dim>
 void HistoryCarry<Dim>::put_back(std::span<const std::int32_t> new_row) {
   put_back_kept(new_row);

@@ -50,6 +50,13 @@ class HistoryCarry {
   /// Nothing is carried.
   void clear();
 
+  /// Copies to a shadow what is carried of contacts and walls by rows of some.
+  /// @param new_row  of every source row. @param of  rows, apart. @param out  one for each: what
+  /// is added is by the place among the rows
+  /// @pre rows and cells are those of the brick to come, without ghosts
+  void copy(std::span<const std::int32_t> new_row, std::span<const Rows> of,
+            std::vector<Migration<Dim>>& out) const;
+
   // ---- into new ones
   /// @param new_row  of every source row. @pre lists and cells of the brick and its ghosts
   void put_back(std::span<const std::int32_t> new_row);

@@ -225,10 +225,10 @@ double distance2_of_last_step(const Brick<Dim>& brick) {
 }
 
 template <int Dim>
-std::uint64_t digest(const Brick<Dim>& brick) {
+std::uint64_t digest(const Brick<Dim>& brick, Rows rows) {
   const ParticleStore<Dim>& store = brick.store;
   std::uint64_t sum = 0;
-  for (std::int32_t i = 0; i < store.num_owned; ++i) {
+  for (std::int32_t i = rows.begin; i < rows.end; ++i) {
     double omega[3];
     for (int c = 0; c < kSpins<Dim>; ++c) omega[c] = store.u(i)[c] / store.radius(i);
     sum += particle_digest(store.id[static_cast<std::size_t>(i)], {store.x(i), std::size_t{Dim}},
@@ -246,7 +246,7 @@ template Travel travel(const Brick<2>&);
 template Travel travel(const Brick<3>&);
 template double distance2_of_last_step(const Brick<2>&);
 template double distance2_of_last_step(const Brick<3>&);
-template std::uint64_t digest(const Brick<2>&);
-template std::uint64_t digest(const Brick<3>&);
+template std::uint64_t digest(const Brick<2>&, Rows);
+template std::uint64_t digest(const Brick<3>&, Rows);
 
 }  // namespace barchan

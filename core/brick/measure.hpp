@@ -25,6 +25,10 @@ template <int Dim>
 [[nodiscard]] double distance2_of_last_step(const Brick<Dim>& brick);
 /// The sum of the particles' hashes (digest.hpp).
 template <int Dim>
-[[nodiscard]] std::uint64_t digest(const Brick<Dim>& brick);
+[[nodiscard]] std::uint64_t digest(const Brick<Dim>& brick, Rows rows);
+template <int Dim>
+[[nodiscard]] std::uint64_t digest(const Brick<Dim>& brick) {
+  return digest(brick, Rows{0, brick.store.num_owned});
+}
 
 }  // namespace barchan

@@ -78,6 +78,21 @@ void encode(const Migration<Dim>& migration, std::vector<std::byte>& message) {
 }
 
 template <int Dim>
+void encode_ghosts(const ParticleStore<Dim>& store, std::span<const Rows> runs,
+                   std::vector<std::byte>& message) {
+  std::vector<RowRecord<Dim>> records;
+  for (const Rows rows : runs) {
+    for (std::int32_t i = rows.begin; i < rows.end; ++i) {
+      RowRecord<Dim>& record = records.emplace_back();
+      record.take(store, i);
+      record.forget_optional();
+    }
+  }
+  message.clear();
+  ByteWriter(message).put_counted(records);
+}
+
+template <int Dim>
 Migration<Dim> decode_migration(std::span<const std::byte> message, const World<Dim>& world,
                                 const CellBox<Dim>& box) {
   Migration<Dim> m;
@@ -118,6 +133,10 @@ std::vector<RowRecord<Dim>> decode_ghosts(std::span<const std::byte> message,
 
 template void encode(const Migration<2>&, std::vector<std::byte>&);
 template void encode(const Migration<3>&, std::vector<std::byte>&);
+template void encode_ghosts(const ParticleStore<2>&, std::span<const Rows>,
+                            std::vector<std::byte>&);
+template void encode_ghosts(const ParticleStore<3>&, std::span<const Rows>,
+                            std::vector<std::byte>&);
 template Migration<2> decode_migration(std::span<const std::byte>, const World<2>&,
                                        const CellBox<2>&);
 template Migration<3> decode_migration(std::span<const std::byte>, const World<3>&,

@@ -55,6 +55,11 @@ struct Migration {
 template <int Dim>
 void encode(const Migration<Dim>& migration, std::vector<std::byte>& message);
 
+/// Ghosts: all of these rows but what optional arrays have. Replaces `message`.
+template <int Dim>
+void encode_ghosts(const ParticleStore<Dim>& store, std::span<const Rows> runs,
+                   std::vector<std::byte>& message);
+
 /// Arrivals in a box of cells. Errors: RunError: damaged, or a particle that belongs elsewhere
 template <int Dim>
 [[nodiscard]] Migration<Dim> decode_migration(std::span<const std::byte> message,

@@ -224,18 +224,7 @@ void Rebuild<Dim>::order() {
 
 template <int Dim>
 void Rebuild<Dim>::pack_ghosts(int link, std::vector<std::byte>& message) const {
-  const BrickLink<Dim>& to = brick_.links[static_cast<std::size_t>(link)];
-  std::vector<RowRecord<Dim>> records;
-  records.reserve(static_cast<std::size_t>(to.num_sent));
-  for (const Rows rows : to.runs) {
-    for (std::int32_t i = rows.begin; i < rows.end; ++i) {
-      RowRecord<Dim>& record = records.emplace_back();
-      record.take(brick_.store, i);
-      record.forget_optional();
-    }
-  }
-  message.clear();
-  ByteWriter(message).put_counted(records);
+  encode_ghosts<Dim>(brick_.store, brick_.links[static_cast<std::size_t>(link)].runs, message);
 }
 
 template <int Dim>

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include <barchan/core/base/bytes.hpp>
 #include <barchan/core/brick/brick.hpp>
 #include <barchan/core/brick/history_carry.hpp>
 #include <barchan/core/brick/lists.hpp>
@@ -47,6 +48,13 @@ class Rebuild {
   void take_ghosts(std::span<const std::span<const std::byte>> messages);
   void restore_history();
 
+  // Shadows: slabs beside a cut of strips go to the brick beyond, which steps them, too.
+  /// All of these slabs, and the ghosts behind them. Instead of pack_ghosts.
+  /// @param depth  how many slabs
+  void pack_slabs(int link, int depth, std::vector<std::byte>& message) const;
+  /// Becomes a slab that is to be absorbed, from what pack_slabs wrote of it; then order().
+  void begin_shadow(const Placement<Dim>& at);
+
   [[nodiscard]] std::int64_t num_leaving() const {
     return std::count_if(leavers_.way.begin(), leavers_.way.end(),
                          [](auto way) { return way >= 0; });
@@ -70,6 +78,10 @@ class Rebuild {
   Leavers leavers_;                    ///< by source row: this brick's, then arrivals
   std::vector<std::int32_t> new_row_;  ///< of every source row; -1: left
 };
+
+/// What pack_slabs wrote, slab by slab from the cut on, and the ghosts behind them, for
+/// take_ghosts. Errors: RunError: damaged
+[[nodiscard]] std::vector<std::vector<std::byte>> unpack_slabs(ByteReader& message, int depth);
 
 extern template class Rebuild<2>;
 extern template class Rebuild<3>;

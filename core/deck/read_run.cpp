@@ -139,6 +139,11 @@ void read_options(const TableReader& root, Model& model) {
       search.string("kind") == "cells" ? ContactSearchKind::Cells : ContactSearchKind::AllPairs;
   model.search.skin = search.optional_number("skin");
 
+  const TableReader exchange(*node("exchange"), root.dimension(), "[exchange]");
+  model.exchange.depth =
+      static_cast<int>(std::min<std::int64_t>(exchange.integer("depth"), kMostDepth + 1));
+  model.exchange.place = exchange.place("depth");
+
   model.limits = read_limits(TableReader(*node("limits"), root.dimension(), "[limits]"));
 
   const TableReader output(*node("output"), root.dimension(), "[output]");

@@ -23,6 +23,7 @@ constexpr KeySpec kRunKeys[] = {
     {"deck", "wall", T::Tables, "", "none", "planes and plates"},
     {"deck", "stage", T::Tables, "", "one stage", "stages of the run, in order"},
     {"deck", "search", T::Table, "", "none", "how contacts are found"},
+    {"deck", "exchange", T::Table, "", "none", "how ranks exchange halos"},
     {"deck", "limits", T::Table, "", "none", "overlaps beyond which a run warns or ends"},
     {"deck", "output", T::Table, "", "none", "what a run writes, and how often"},
     {"deck", "checkpoint", T::Table, "", "none", "when a run saves its state"},
@@ -67,6 +68,10 @@ constexpr KeySpec kRunKeys[] = {
      "cells|all-pairs"},
     {"[search]", "skin", T::NonNegativeNumber, "m", "from the radii and speeds, then tuned",
      "gap up to which a pair is kept as a candidate"},
+
+    {"[exchange]", "depth", T::NonNegativeInteger, "slabs", "0",
+     "beyond each cut between ranks, which a rank steps, too, so that halos may come as many steps "
+     "late; the layers of cells along the strip axis count; no bit depends on it"},
 
     {"[limits]", "overlap_warning", T::NonNegativeNumber, "", "0.5",
      "share of the smaller radius; a larger overlap gives one warning; 0 = never"},

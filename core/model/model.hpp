@@ -144,6 +144,13 @@ struct SearchSpec {
   std::optional<double> skin;  ///< [m]; none = the default (tasks/stability.hpp)
 };
 
+/// How ranks exchange halos. No bit of the state depends on it.
+struct ExchangeSpec {
+  int depth = 0;        ///< slabs beyond each cut that a rank steps, too
+  SourcePlace place{};  ///< of it in the deck, if it comes from one
+};
+inline constexpr int kMostDepth = 64;
+
 /// Overlaps beyond which a run warns or ends, as shares of the smaller radius; infinite: never.
 struct LimitSpec {
   double overlap_warning = 0.5;
@@ -208,6 +215,7 @@ struct Model {
   std::vector<Stage> stages;  ///< never empty
   HeatSpec heat;
   SearchSpec search;
+  ExchangeSpec exchange;
   LimitSpec limits;
   OutputSpec output;
   CheckpointSpec checkpoint;

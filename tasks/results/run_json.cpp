@@ -57,7 +57,9 @@ Json communication_of(const RunSummary& s) {
             {"exposed_seconds_most", s.exposed_most},
             {"hidden_fraction", s.hidden_fraction()},
             {"messages", s.messages},
-            {"bytes", s.bytes}};
+            {"bytes", s.bytes},
+            {"depth", s.cuts.depth}};
+  if (s.cuts.depth > 0) json["redundant_seconds"] = s.phases.at("shadows");
   for (const auto& [name, time] : s.communication) {
     json[name] = {{"in_flight_seconds", time.in_flight}, {"exposed_seconds", time.exposed}};
     if (name != "reductions") json[name]["late_seconds"] = time.late;

@@ -136,6 +136,27 @@ TEST_P(ExchangeOfEveryKind, BringsEveryHaloToTheRightPlaceInTheRightStep) {
   EXPECT_EQ(exchange->name(), GetParam().exchange);
 }
 
+/// Each rank is as many messages ahead of those that it has as the depth lets it, and ranks have
+/// different ones at a time; also after slots have grown.
+TEST_P(ExchangeOfEveryKind, LetsSoManyMessagesBeUnderWayAsTheDepthSays) {
+  constexpr int kDepth = 3, kSteps = 40;
+  ExchangeOptions options;
+  options.depth = kDepth;
+  options.halo_bytes = 500;
+  const auto exchange = make(options);
+  for (const std::size_t bytes : {500U, 1500U}) {
+    exchange->reserve(bytes);
+    const int first = bytes == 500 ? 0 : kSteps;
+    for (int step = 0; step < kSteps + kDepth; ++step) {
+      for (const int link : both_links) {
+        if (step < kSteps) send(*exchange, link, first + step, bytes);
+        if (step >= kDepth) receive(*exchange, link, first + step - kDepth, bytes);
+      }
+      if (HasFatalFailure()) comm_.abort(1);
+    }
+  }
+}
+
 TEST_P(ExchangeOfEveryKind, GrowsInMidRunAndLosesNothing) {
   const auto exchange = make({64, 64, {}});
   std::size_t room = 64;
@@ -180,7 +201,9 @@ TEST_P(ExchangeOfEveryKind, MovesBulksOfMegabytes) {
 }
 
 TEST_P(ExchangeOfEveryKind, KeepsTheBytesBehindRandomDelays) {
-  const auto exchange = make({3000, 500, {.max_delay_seconds = 4e-4, .delay_seed = 7}});
+  const auto exchange = make({.halo_bytes = 3000,
+                              .bulk_bytes = 500,
+                              .hooks = {.max_delay_seconds = 4e-4, .delay_seed = 7}});
 
   for (int round = 0; round < 15; ++round) {
     run_steps(*exchange, 10 * round, 10 * round + 10, 3000);

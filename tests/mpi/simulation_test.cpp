@@ -115,6 +115,22 @@ std::string cuts_for(const Scenario& s, unsigned turn) {
   return cuts;
 }
 
+/// Of shadows, where so many fit: 0, 1 or 3.
+int depth_for(const Scenario& s, const RunOptions& o, unsigned turn) {
+  constexpr std::array<int, 3> kDepths{1, 3, 0};
+  int depth = kDepths[turn % kDepths.size()];
+  if (o.exchange == "return" || !o.cuts.empty() || num_ranks() == 1) return 0;
+  const CutRoom room = plan_cuts(s.model, s.set).room;
+  for (; depth > 0; --depth) {
+    try {
+      (void)choose_cuts({{}, num_ranks(), 1, false, {}, depth, {}}, room);
+      break;
+    } catch (const InputError&) {
+    }
+  }
+  return depth;
+}
+
 /// All are tried on two ranks; a half, drawn by the number of the variant, on three and four; a
 /// third on one rank, where nothing is sent. BARCHAN_TEST_ALL=1 tries all.
 bool is_tried(unsigned number) {
@@ -146,6 +162,8 @@ std::vector<RunOptions> variants(const Scenario& s, unsigned turn) {
     o.hooks.delay_seed = 17 * q + 1;
     o.progress = q % 4 == 1 ? Progress::Thread : Progress::Poll;
     o.hooks.ranks_per_node = 2;
+    o.depth = depth_for(s, o, q + turn / 4);
+    o.hooks.compare_shadows = true;
     all.push_back(o);
   }
   return all;
@@ -153,8 +171,9 @@ std::vector<RunOptions> variants(const Scenario& s, unsigned turn) {
 
 std::string describe(const RunOptions& o) {
   return fmt::format(
-      "{} ranks, cuts '{}', exchange {}, {} threads, {}{}, {}, {}, delays up to {} s", num_ranks(),
-      o.cuts, o.exchange, o.threads, o.schedule == Schedule::Overlap ? "overlap" : "sequential",
+      "{} ranks, cuts '{}', depth {}, exchange {}, {} threads, {}{}, {}, {}, delays up to {} s",
+      num_ranks(), o.cuts, o.depth.value_or(0), o.exchange, o.threads,
+      o.schedule == Schedule::Overlap ? "overlap" : "sequential",
       o.progress == Progress::Thread ? " by a thread" : "",
       o.search == ContactSearchKind::Cells ? "cells" : "all-pairs", o.vector,
       o.hooks.max_delay_seconds);

@@ -21,7 +21,7 @@ function timelineSection() {
   let view = [...firstView], picked = -1;
   const pen = canvas.getContext('2d');
   const rowOf = (rank, worker) => rows.findIndex(row => row[0] === rank && row[1] === worker);
-  const nested = new Set(['send', 'poll', 'migration', 'ghosts']);
+  const nested = new Set(['send', 'poll', 'migration', 'ghosts', 'shadows']);
   const y = row => head + row * rowHeight;
   let px = null;
 

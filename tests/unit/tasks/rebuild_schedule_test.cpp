@@ -142,6 +142,48 @@ TEST(RebuildSchedule, ChecksComeSeldomWhileNothingMovesAndEveryLookHasOne) {
   EXPECT_LE(checks, 20 * kLook / 3);
 }
 
+TEST(RebuildSchedule, EveryLookHasItsCheckHoweverLateAnswersAre) {
+  for (const int lag : {2, 6, 10, 16}) {
+    RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0, kLook, lag);
+    schedule.begin(0, 0.0);
+    int rebuilds = 0;
+    double moved = 0.0;
+    for (std::int64_t step = 0; step < 1000; ++step) {
+      if (schedule.must_rebuild(step)) {
+        ASSERT_LE(moved, 0.5 * kSkin) << "lag " << lag << ", step " << step;
+        schedule.rebuilt(step);
+        moved = 0.0;
+        ++rebuilds;
+      }
+      EXPECT_TRUE(step % kLook != 0 || schedule.is_check_due(step))
+          << "lag " << lag << ": " << step;
+      if (schedule.is_check_due(step)) schedule.begin_check(travel_of(moved, 0.3), {});
+      moved += 0.3 * kDt;
+    }
+    EXPECT_GT(rebuilds, 10);
+  }
+}
+
+TEST(RebuildSchedule, AnAnswerThatIsOverdueAfterARestartIsTakenAtOnce) {
+  RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0, kLook);
+  schedule.restore(23, 0.0, {16, 5, 0.5}, 100);  // another run's answers came 10 steps later
+
+  EXPECT_FALSE(schedule.must_rebuild(23));
+  ASSERT_TRUE(schedule.take_answer());
+  EXPECT_FALSE(schedule.must_rebuild(24));
+  EXPECT_FALSE(schedule.take_answer());
+}
+
+TEST(RebuildSchedule, HoldsWhatACheckFoundAgainstTheSkinThatItsListsHad) {
+  RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0, kLook);
+  schedule.begin_check(travel_of(0.4 * kSkin, 0.0), {});
+  schedule.set_skin(0.5 * kSkin);
+  schedule.rebuilt(1);
+
+  EXPECT_FALSE(schedule.must_rebuild(RebuildSchedule::kLag));
+  EXPECT_LE(schedule.take_answer()->distance, 0.25 * kSkin);
+}
+
 TEST(RebuildSchedule, ALookIsAnsweredThoughListsAreMadeAnewMeanwhile) {
   RebuildSchedule schedule(Communicator(test::world()), kSkin, kDt, 0.0, kLook);
   schedule.begin_check({kSkin, 0.0, 17, 0.25, 1, {}}, {});

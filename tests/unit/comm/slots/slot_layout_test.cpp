@@ -11,11 +11,12 @@ namespace {
 
 constexpr int kLinks = 3;
 
-std::vector<MessageKey> every_slot() {
+std::vector<MessageKey> every_slot(const SlotCapacity& capacity) {
   std::vector<MessageKey> keys;
   for (const Channel channel : {Channel::Halo, Channel::Bulk}) {
     for (int link = 0; link < kLinks; ++link) {
-      for (const std::uint64_t number : {1U, 2U}) keys.push_back({channel, link, number});
+      for (int n = 1; n <= capacity.slots(channel); ++n)
+        keys.push_back({channel, link, static_cast<std::uint64_t>(n)});
     }
   }
   return keys;
@@ -23,9 +24,10 @@ std::vector<MessageKey> every_slot() {
 
 TEST(SlotLayout, KeepsWordsAndSlotsApartAndOnCacheLines) {
   for (const std::size_t halo : {0U, 1U, 64U, 1000U}) {
-    const SlotLayout layout{{halo, 777}, kLinks};
+    const int depth = static_cast<int>(halo % 7);
+    const SlotLayout layout{{halo, 777, depth}, kLinks};
     std::vector<std::pair<std::size_t, std::size_t>> ranges;  // begin, end
-    for (const MessageKey& key : every_slot()) {
+    for (const MessageKey& key : every_slot(layout.capacity)) {
       ranges.emplace_back(layout.word(key), layout.word(key) + SlotLayout::kWordBytes);
       ranges.emplace_back(layout.slot(key),
                           layout.slot(key) + slot_bytes(layout.capacity.of(key.channel)));
@@ -45,6 +47,15 @@ TEST(SlotLayout, TakesTurnsBetweenTwoSlots) {
 
   EXPECT_NE(layout.slot({Channel::Halo, 1, 5}), layout.slot({Channel::Halo, 1, 6}));
   EXPECT_EQ(layout.slot({Channel::Halo, 1, 5}), layout.slot({Channel::Halo, 1, 7}));
+}
+
+TEST(SlotLayout, UsesAHaloSlotAgainAfterTwiceTheDepthAndTwo) {
+  const SlotLayout layout{{100, 100, 3}, kLinks};
+
+  for (std::uint64_t n = 6; n < 13; ++n)
+    EXPECT_NE(layout.slot({Channel::Halo, 1, 5}), layout.slot({Channel::Halo, 1, n}));
+  EXPECT_EQ(layout.slot({Channel::Halo, 1, 5}), layout.slot({Channel::Halo, 1, 13}));
+  EXPECT_EQ(layout.slot({Channel::Bulk, 1, 5}), layout.slot({Channel::Bulk, 1, 7}));
 }
 
 TEST(SlotLayout, HasRoomForHeaderPayloadAndTrailer) {
