@@ -110,6 +110,8 @@ SelectedExchange select_exchange(const Communicator& communicator, const Neighbo
   choice.work = work;
   const Links links = count_links(communicator, neighbours, options.hooks.ranks_per_node);
   for (const std::string& name : auto_candidates(links)) {
+    // With a depth it has a window for each message that may be under way, which take long to make.
+    if (options.depth > 0 && name.find("pscw") != std::string::npos) continue;
     if (needs_window(name) && !choice.hint.empty()) {  // what one lacks, all lack
       choice.candidates.push_back({name, choice.hint});
       continue;
